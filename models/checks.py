@@ -1,0 +1,140 @@
+"""Checks of input: one clear error that says what, where, expected and found."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+class InputError(ValueError):
+    """Input that can't be worked on.
+
+    Parameters
+    ----------
+    what : str
+        The thing that is wrong, by the name that the user knows it by.
+    expected, found : str, optional
+        What would have been right, and what was there.
+    where : str, optional
+        File, record, table or argument that holds it.
+
+    Examples
+    --------
+    >>> str(InputError("order", expected="in [0, 2]", found="2.4", where="--orders"))
+    '--orders: order must be in [0, 2], got 2.4'
+    """
+
+    def __init__(
+        self, what: str, *, expected: str = "", found: str = "", where: str = ""
+    ) -> None:
+        text = what
+        if expected:
+            text += f" must be {expected}"
+        if found:
+            text += f", got {found}" if expected else f": {found}"
+        super().__init__(f"{where}: {text}" if where else text)
+        self.what = what
+        self.expected = expected
+        self.found = found
+        self.where = where
+
+
+def number(
+    name: str,
+    value: Any,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
+    where: str = "",
+) -> float:
+    """Return `value` as a finite float within the stated bounds, or raise `InputError`.
+
+    Examples
+    --------
+    >>> number("rod_radius", 0.012, above=0.0)
+    0.012
+    """
+    bounds = [
+        text
+        for limit, text in (
+            (above, f"> {above}"),
+            (at_least, f">= {at_least}"),
+            (below, f"< {below}"),
+            (at_most, f"<= {at_most}"),
+        )
+        if limit is not None
+    ]
+    expected = "a finite number" + (" " + " and ".join(bounds) if bounds else "")
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise InputError(name, expected=expected, found=repr(value), where=where) from None
+    outside = (
+        not math.isfinite(result)
+        or (above is not None and not result > above)
+        or (at_least is not None and not result >= at_least)
+        or (below is not None and not result < below)
+        or (at_most is not None and not result <= at_most)
+    )
+    if outside:
+        raise InputError(name, expected=expected, found=repr(value), where=where)
+    return result
+
+
+def finite_array(
+    name: str, value: ArrayLike, *, ndim: int | None = None, min_size: int = 1, where: str = ""
+) -> Array:
+    """Return `value` as a float64 array (never a copy where none is needed), all finite.
+
+    Examples
+    --------
+    >>> finite_array("x", [1, 2]).dtype
+    dtype('float64')
+    """
+    try:
+        result = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(name, expected="numeric", found=type(value).__name__, where=where) from None
+    if ndim is not None and result.ndim != ndim:
+        raise InputError(
+            name, expected=f"{ndim}-dimensional", found=f"shape {result.shape}", where=where
+        )
+    if result.size < min_size:
+        raise InputError(
+            name, expected=f"at least {min_size} values", found=f"{result.size}", where=where
+        )
+    bad = ~np.isfinite(result)
+    if bad.any():
+        index = tuple(int(i) for i in np.argwhere(bad)[0])
+        raise InputError(
+            name,
+            expected="finite throughout",
+            found=f"{result[index]} at index {index[0] if len(index) == 1 else index}"
+            f" ({int(bad.sum())} such values)",
+            where=where,
+        )
+    return result
+
+
+def one_of(name: str, value: str, choices: Iterable[str], *, where: str = "") -> str:
+    """Return `value` if it is one of `choices`, or raise `InputError` that lists them.
+
+    Examples
+    --------
+    >>> one_of("convention", "paper", ("paper", "standard"))
+    'paper'
+    """
+    listed = tuple(choices)
+    if value not in listed:
+        raise InputError(
+            name, expected="one of " + ", ".join(listed), found=repr(value), where=where
+        )
+    return value
