@@ -1,0 +1,1 @@
+"""Model discovery for fluid inerters: which structure holds, where, how surely, what it misses."""
