@@ -1,0 +1,319 @@
+"""Constitutive models: a sum of terms with coefficients, simulated and stored.
+
+The paper's four families are functions here that return a `ForceModel` (Eqs. 5, 6, 7, 11).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import reduce
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models.checks import Array, InputError, number
+from models.device import Device
+from models.flow import critical_frequency
+from models.fractional import harmonic_factors
+from models.motion import Motion
+from models.terms import Term, find_term
+
+_HARMONIC_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
+
+
+@dataclass(frozen=True)
+class FittedTerm:
+    """A term with its coefficient and shape.
+
+    Examples
+    --------
+    >>> FittedTerm("fractional-derivative", 580.0, {"order": 1.89}).unit
+    'N s^1.89/m'
+    """
+
+    id: str
+    """Id in the vocabulary."""
+    coefficient: float
+    """In `unit`."""
+    shape: Mapping[str, float] = field(default_factory=dict)
+    """Shape parameters, SI."""
+
+    def __post_init__(self) -> None:
+        """Check the names and values; fill in defaults."""
+        shape = self.term.shape(self.shape)
+        object.__setattr__(self, "shape", MappingProxyType(shape))
+        number(f"coefficient of {self.id}", self.coefficient)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle by value (a mapping proxy can't be pickled)."""
+        return (FittedTerm, (self.id, self.coefficient, dict(self.shape)))
+
+    @property
+    def term(self) -> Term:
+        """The entry of the vocabulary."""
+        return find_term(self.id)
+
+    @property
+    def unit(self) -> str:
+        """SI unit of the coefficient."""
+        return self.term.unit.format(**{k: f"{v:.4g}" for k, v in self.shape.items()})
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return id, coefficient, unit and shape parameters, flat as in documents."""
+        return {
+            "id": self.id, "coefficient": self.coefficient, "unit": self.unit, **self.shape
+        }
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], *, where: str = "") -> FittedTerm:
+        """Read what `to_dict` wrote; further keys (intervals) are passed over."""
+        for key in ("id", "coefficient"):
+            if key not in data:
+                raise InputError(f"key {key!r} of a term", expected="given", where=where)
+        names = {p.name for p in find_term(str(data["id"]), where=where).parameters}
+        shape = {k: float(v) for k, v in data.items() if k in names}
+        return cls(str(data["id"]), number("coefficient", data["coefficient"], where=where), shape)
+
+
+@dataclass(frozen=True)
+class ForceModel:
+    """Force as a sum of terms of the motion, seen through input and output effects.
+
+    Examples
+    --------
+    >>> from models.motion import sine_motion
+    >>> model = ForceModel((FittedTerm("inertia", 100.0),), name="mass")
+    >>> float(model.force(sine_motion(0.01, 1.0)).max().round(3))
+    39.478
+    """
+
+    terms: tuple[FittedTerm, ...]
+    """Terms in any order; output effects are applied in the order given, last outermost."""
+    name: str = ""
+    """For legends and tables."""
+
+    def force(self, motion: Motion) -> Array:
+        """Return the force for `motion`, (N,) N."""
+        added = [t for t in self.terms if t.term.acts == "force"]
+
+        def of_terms(moved: Motion) -> Array:
+            total = np.zeros_like(moved.displacement)
+            for fitted in added:
+                column = fitted.term.column
+                if column is not None:
+                    total += fitted.coefficient * column(moved, fitted.shape)
+            return total
+
+        def wrap(inner: Any, fitted: FittedTerm) -> Any:
+            transform = fitted.term.transform
+            return lambda moved: transform(inner, moved, fitted.coefficient, fitted.shape)  # type: ignore[misc]
+
+        chain = [t for t in self.terms if t.term.acts == "input"]
+        chain += [t for t in self.terms if t.term.acts == "output"]
+        result: Array = reduce(wrap, chain, of_terms)(motion)
+        return result
+
+    def dynamic_stiffness(self, omega: ArrayLike) -> NDArray[np.complex128]:
+        """Return F/X of the terms that are linear in displacement, N/m, at `omega` in rad/s.
+
+        Friction and nonlinear damping have no transfer function; they are left out, and
+        `nonlinear_terms` names them.
+        """
+        w = np.asarray(omega, dtype=np.float64)
+        total = np.zeros(w.shape, dtype=np.complex128)
+        for fitted in self.terms:
+            order = fitted.shape.get("order", _HARMONIC_ORDERS.get(fitted.id))
+            if order is not None:
+                factor = harmonic_factors(np.array([order]), np.ravel(w))[0]
+                total += fitted.coefficient * factor.reshape(w.shape)
+        return total
+
+    @property
+    def nonlinear_terms(self) -> tuple[str, ...]:
+        """Ids of the terms that `dynamic_stiffness` leaves out."""
+        return tuple(t.id for t in self.terms if not t.term.harmonic)
+
+    def coefficient(self, identifier: str) -> float:
+        """Return the coefficient of the first term called `identifier`, 0 where there is none."""
+        return next((t.coefficient for t in self.terms if t.id == identifier), 0.0)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return name and terms."""
+        return {"name": self.name, "terms": [t.to_dict() for t in self.terms]}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], *, where: str = "") -> ForceModel:
+        """Read what `to_dict` wrote."""
+        if not isinstance(data.get("terms"), Sequence):
+            raise InputError("terms", expected="a list", found=repr(data.get("terms")), where=where)
+        terms = tuple(FittedTerm.from_dict(t, where=where) for t in data["terms"])
+        return cls(terms, str(data.get("name", "")))
+
+
+@dataclass(frozen=True)
+class Band:
+    """A range of the coordinate and the model that holds there."""
+
+    lower: float | None
+    """Lower end of the coordinate; None where open."""
+    upper: float | None
+    """Upper end; None where open."""
+    model: ForceModel
+    """The model inside."""
+
+
+@dataclass(frozen=True)
+class SegmentedModel:
+    """Models by band of the Dean number, speed amplitude or frequency (Eq. 11)."""
+
+    bands: tuple[Band, ...]
+    """In rising order, without gaps."""
+    coordinate: str
+    """"dean", "speed" (m/s amplitude) or "frequency" (Hz)."""
+    convention: str = "paper"
+    """Convention of the Dean number."""
+    device: Device | None = None
+    """Needed for the Dean number; optional otherwise."""
+    name: str = ""
+    """For legends and tables."""
+
+    def at(self, coordinate: float) -> ForceModel:
+        """Return the model of the band that holds `coordinate`."""
+        for band in self.bands:
+            if band.upper is None or coordinate < band.upper:
+                return band.model
+        return self.bands[-1].model
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document ``model.json`` without its header."""
+        result: dict[str, Any] = {
+            "name": self.name,
+            "convention": self.convention,
+            "bands": [
+                {
+                    "lower": b.lower,
+                    "upper": b.upper,
+                    "coordinate": self.coordinate,
+                    "terms": b.model.to_dict()["terms"],
+                }
+                for b in self.bands
+            ],
+        }
+        if self.device is not None:
+            result["device"] = self.device.to_dict()
+        return result
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], *, where: str = "") -> SegmentedModel:
+        """Read what `to_dict` wrote."""
+        if not isinstance(data.get("bands"), Sequence) or not data["bands"]:
+            raise InputError("bands", expected="a list of bands", found="none", where=where)
+        device = Device.from_dict(data["device"]) if data.get("device") else None
+        bands = tuple(
+            Band(b.get("lower"), b.get("upper"), ForceModel.from_dict(b, where=where))
+            for b in data["bands"]
+        )
+        coordinate = str(data["bands"][0].get("coordinate", "speed"))
+        convention = str(data.get("convention", "paper"))
+        return cls(bands, coordinate, convention, device, str(data.get("name", "")))
+
+
+def _friction(device: Device, friction: float | None) -> float:
+    value = device.coulomb_friction if friction is None else friction
+    if value is None:
+        raise InputError(
+            "coulomb_friction", expected="given, by the device or the call", found="nothing"
+        )
+    return value
+
+
+def ioim_laminar(device: Device, *, friction: float | None = None) -> ForceModel:
+    """Return the laminar integer-order model: b a + c1 v|v| + c2 v + f0 sign v (Eq. 5).
+
+    Examples
+    --------
+    >>> model = ioim_laminar(Device.preset("device-12"))
+    >>> round(model.coefficient("inertia"), 2)
+    370.38
+    """
+    c1, c2 = device.laminar_coefficients
+    return ForceModel(
+        (
+            FittedTerm("inertia", device.inertance),
+            FittedTerm("quadratic-damping", c1),
+            FittedTerm("viscous-damping", c2),
+            FittedTerm("coulomb-friction", _friction(device, friction)),
+        ),
+        "IOIM-laminar",
+    )
+
+
+def ioim_turbulent(device: Device, *, friction: float | None = None) -> ForceModel:
+    """Return the turbulent model: b a + c1 |v|^1.75 sign v + c2 v|v| + c3 v + f0 sign v (Eq. 6).
+
+    Without a piston clearance the film term c3 is left out.
+    """
+    c1, c2, c3 = device.turbulent_coefficients
+    film = () if c3 is None else (FittedTerm("viscous-damping", c3),)
+    return ForceModel(
+        (
+            FittedTerm("inertia", device.inertance),
+            FittedTerm("power-law-damping", c1, {"exponent": 1.75}),
+            FittedTerm("quadratic-damping", c2),
+            *film,
+            FittedTerm("coulomb-friction", _friction(device, friction)),
+        ),
+        "IOIM-turbulent",
+    )
+
+
+def foim(device: Device, b0: float, order: float, *, friction: float | None = None) -> ForceModel:
+    """Return the fractional model: b(1 + b0) D^order x + f0 sign v (Eq. 7).
+
+    b and b0 enter only as their product with one: b comes from the device.
+
+    Examples
+    --------
+    >>> round(foim(Device.preset("device-12"), 0.57, 1.89).terms[0].coefficient, 1)
+    581.5
+    """
+    number("b0", b0, above=-1.0)
+    number("order", order, at_least=0.0, at_most=2.0)
+    return ForceModel(
+        (
+            FittedTerm("fractional-derivative", device.inertance * (1.0 + b0), {"order": order}),
+            FittedTerm("coulomb-friction", _friction(device, friction)),
+        ),
+        "FOIM",
+    )
+
+
+def sfoim(
+    device: Device,
+    below: tuple[float, float],
+    above: tuple[float, float],
+    *,
+    dean: float = 100.0,
+    convention: str = "paper",
+    friction: float | None = None,
+) -> SegmentedModel:
+    """Return the segmented fractional model (Eq. 11): (b0, order) below and above a Dean number.
+
+    See Also
+    --------
+    models.flow.critical_frequency : where the boundary lies for an amplitude.
+    """
+    critical_frequency(device, 0.001, dean=dean, convention=convention)
+    return SegmentedModel(
+        (
+            Band(None, dean, foim(device, *below, friction=friction)),
+            Band(dean, None, foim(device, *above, friction=friction)),
+        ),
+        "dean",
+        convention,
+        device,
+        "SFOIM",
+    )

@@ -1,0 +1,26 @@
+"""Coulomb friction of seals, reversing over a finite range of speed."""
+
+import numpy as np
+
+from models.checks import Array
+from models.motion import Motion
+from models.terms.term import Parameter, Shape, Term
+
+
+def column(motion: Motion, shape: Shape) -> Array:
+    """Return sign v, or tanh(v/v_t) where the transition speed v_t is not zero."""
+    transition = shape.get("transition_speed", 0.0)
+    if transition == 0.0:
+        return np.sign(motion.velocity)
+    return np.tanh(motion.velocity / transition)
+
+
+TERM = Term(
+    "coulomb-friction",
+    "N",
+    "f0 times sign v; friction reverses over the transition speed, 0 for a jump",
+    column,
+    parameters=(Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),),
+    nonnegative=True,
+    mistaken_for=("stribeck-friction", "power-law-damping", "hysteresis"),
+)

@@ -1,0 +1,91 @@
+"""What a term is: a shape of the motion with a coefficient, or a change of what is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from models.checks import Array, InputError, number
+from models.motion import Motion
+
+Shape = Mapping[str, float]
+ForceOf = Callable[[Motion], Array]
+ScaledBy = Literal["", "displacement", "speed", "force"]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A shape parameter of a term, profiled out of every fit (it is not linear)."""
+
+    name: str
+    """Key in documents, as ``order`` or ``exponent``."""
+    lower: float
+    """Least sensible value, in units of `scaled_by`."""
+    upper: float
+    """Greatest sensible value, likewise."""
+    default: float
+    """Value where none is given, likewise."""
+    unit: str
+    """SI unit of the value in documents; "" where dimensionless."""
+    scaled_by: ScaledBy = ""
+    """The campaign's amplitude that the bounds are fractions of; "" where they are absolute."""
+    spacing: Literal["linear", "log"] = "linear"
+    """How trial values are spread."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """One entry of the vocabulary: a model's term and, by the same name, a missing effect.
+
+    A term that acts as a "force" adds ``coefficient * column(motion, shape)``. Others change the
+    motion before the device sees it ("input"), or the force on its way to the record ("output"):
+    they carry `transform` instead.
+    """
+
+    id: str
+    """Name in commands and documents."""
+    unit: str
+    """SI unit of the coefficient; "{order}" and "{exponent}" are filled in."""
+    summary: str
+    """One line in plain words, with the formula."""
+    column: Callable[[Motion, Shape], Array] | None = None
+    """Force per unit coefficient, (N,); None for a term that is not an added force."""
+    transform: Callable[[ForceOf, Motion, float, Shape], Array] | None = None
+    """Force (N,) of the changed device, from the force of the unchanged one."""
+    acts: Literal["force", "input", "output"] = "force"
+    """Where in the chain it acts."""
+    parameters: tuple[Parameter, ...] = ()
+    """Shape parameters."""
+    nonnegative: bool = False
+    """True where a negative coefficient is unphysical."""
+    mistaken_for: tuple[str, ...] = ()
+    """Ids that data of little variety can't tell it from."""
+    harmonic: bool = False
+    """True where the column is linear in the displacement."""
+
+    def shape(self, given: Shape) -> dict[str, float]:
+        """Return the parameters' values: those given, else the defaults that are absolute.
+
+        Raises
+        ------
+        InputError
+            For a name that the term does not have, or a scaled parameter without a value.
+        """
+        known = {p.name: p for p in self.parameters}
+        for name in given:
+            if name not in known:
+                raise InputError(
+                    f"parameter {name!r} of {self.id}",
+                    expected="one of " + (", ".join(known) or "none"),
+                    found=repr(name),
+                )
+        result = {}
+        for name, parameter in known.items():
+            if name in given:
+                result[name] = number(f"{self.id}.{name}", given[name])
+            elif parameter.scaled_by and parameter.default:
+                raise InputError(f"{self.id}.{name}", expected="given", found="nothing")
+            else:
+                result[name] = parameter.default
+        return result
