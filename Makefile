@@ -1,0 +1,49 @@
+# The one list of commands. Each sets up .venv itself; nothing but Python 3.11+ and make is needed.
+PYTHON ?= python3
+JOBS ?= 2
+VENV := .venv
+BIN := $(VENV)/bin
+# Parallelism is over processes; threads inside them would only compete.
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+
+.PHONY: study test check bench calibration notebooks clean
+
+study: $(VENV)/.installed ## discover on the shipped campaign; prints the verdict and the report's path
+	@$(BIN)/inerter discover --jobs $(JOBS)
+
+test: $(VENV)/.installed-dev ## all tests and doctests
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal
+
+check: $(VENV)/.installed-dev ## style, types and layers
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/.installed-dev ## times and errors beside other packages; keeps the table
+	$(BIN)/python -m tests.benchmarks
+
+calibration: $(VENV)/.installed-dev ## the seeded calibration study of structures and boundaries
+	$(BIN)/python -m tests.calibration --jobs $(JOBS)
+
+notebooks: $(VENV)/.installed-notebooks ## run every notebook and keep its pictures
+	$(BIN)/jupyter nbconvert --to notebook --execute --inplace notebooks/*.ipynb
+
+clean: ## remove the environment and caches
+	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+
+$(BIN)/python:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, found " + sys.version.split()[0] + "; set PYTHON=...")'
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+	@touch $@
+
+$(VENV)/.installed-dev: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-notebooks: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[notebooks]'
+	@touch $@ $(VENV)/.installed
