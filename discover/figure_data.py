@@ -1,0 +1,91 @@
+"""What pictures of a study need beyond its document: decimated curves and the other answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from models.checks import Array
+
+
+@dataclass(frozen=True)
+class RecordCurves:
+    """One record as pictures show it: where it stands in the plan, and measured beside model."""
+
+    file: str
+    """Name as in the campaign."""
+    kind: str
+    """Kind of record: "sine", "periodic", "transient" or "trajectory"."""
+    held_out: bool
+    """Never fitted, only predicted."""
+    band: int | None
+    """Index into the study's bands; None where no band holds it."""
+    structure: str
+    """Structure of that band; "" where there is none."""
+    frequency: float | None
+    """Hz; None for a record that is no sine test."""
+    amplitude: float | None
+    """m, displacement amplitude; None for a record that is no sine test."""
+    dean_paper: float | None
+    """Dean number at the speed amplitude, the paper's convention; None without a device."""
+    dean_standard: float | None
+    """The same by the standard convention."""
+    time: Array
+    """(n,) s, one or two cycles of a sine test, else the whole record; at most about 600 points."""
+    displacement: Array
+    """(n,) m."""
+    velocity: Array
+    """(n,) m/s."""
+    force: Array
+    """(n,) N, measured."""
+    model_force: Array
+    """(n,) N, by the study's model."""
+    error_percent: float | None
+    """RMSE over the force's peak, percent."""
+    relative_error_percent: float | None
+    """100 ||e||/||F||."""
+    noise_percent: float | None
+    """100 ||noise||/||F||."""
+
+
+@dataclass(frozen=True)
+class BaselineAnswer:
+    """What a named sparse-regression method says on the same columns of one band."""
+
+    method: str
+    """For instance "STLSQ", "SR3", "SSR"."""
+    band: int
+    """Index into the study's bands."""
+    terms: tuple[tuple[str, float], ...]
+    """(label, coefficient in SI) of each term that it keeps, in its own order."""
+    relative_error_percent: float | None
+    """100 ||e||/||F|| over the band's fitted records; None where it gave no model."""
+    seconds: float | None = None
+    """Time that it took, s."""
+
+
+@dataclass(frozen=True)
+class StructureProbability:
+    """How probable one structure is in one band."""
+
+    band: int
+    """Index into the study's bands."""
+    structure: str
+    """"FOIM", "IOIM-linear", "IOIM-laminar", "IOIM-turbulent" or "other"."""
+    probability: float
+    """In [0, 1]; over a band's structures they add up to one."""
+
+
+@dataclass(frozen=True)
+class StudyFigureData:
+    """Everything that the study's pictures need and its document does not carry."""
+
+    records: tuple[RecordCurves, ...]
+    """In the campaign's order, held-out ones included."""
+    baselines: tuple[BaselineAnswer, ...] = ()
+    """Answers of the named methods, band by band."""
+    probabilities: tuple[StructureProbability, ...] = ()
+    """All structures that were weighed, band by band."""
+    dean_per_speed_paper: float | None = None
+    """Dean number per m/s of piston speed, the paper's convention; None without a device."""
+    dean_per_speed_standard: float | None = None
+    """The same by the standard convention."""
