@@ -232,7 +232,8 @@ class Device:
         only so.
         """
         s1, s2 = self.annulus_area, self.channel_area
-        c2 = 8.0 * self.fluid.viscosity * self.channel_length * s1**2 / (self.channel_radius**2 * s2)
+        c2 = 8.0 * self.fluid.viscosity * self.channel_length * s1**2
+        c2 /= self.channel_radius**2 * s2
         return LaminarCoefficients(c1=0.75 * self.fluid.density * s1**3 / s2**2, c2=c2)
 
     @property
@@ -303,7 +304,7 @@ class Device:
         return cls(**values)
 
 
-def _fluid(table: Any, base: Device | None, *, where: str) -> Fluid:
+def _fluid(table: object, base: Device | None, *, where: str) -> Fluid:
     """Return the fluid of a `[device.fluid]` table, gaps filled from the preset's."""
     if not isinstance(table, Mapping):
         raise InputError("fluid", expected="a table", found=repr(table), where=where)
