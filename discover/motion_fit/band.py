@@ -1,0 +1,256 @@
+"""Records that are no sine test: band-limited motion, and lines of tapered windows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.signal.windows import tukey
+
+from discover.motion_fit.noise import power_density
+from discover.motion_fit.observation import Lines, Observation, Window
+from discover.records import Record
+from models.checks import Array, InputError
+from models.fractional import band_limited_derivative, low_pass, spectral_derivative
+from models.motion import Motion
+
+_SIGNAL_TO_NOISE = 100.0  # power of the displacement over its floor at the band's end
+_NYQUIST_SHARE = 0.9
+_RELATIVE_FLOOR = 1e-6
+_TAPER = 0.1
+_LINES_PER_WINDOW = 40
+_MAX_WINDOWS = 16
+
+
+def smooth(density: Array) -> Array:
+    """Return a power density averaged over a twelfth of an octave and at least five bins."""
+    size = density.size
+    index = np.arange(size)
+    half = np.maximum((index * 0.03).astype(int), 2)
+    total = np.concatenate(([0.0], np.cumsum(density)))
+    low, high = np.maximum(index - half, 0), np.minimum(index + half, size - 1)
+    return (total[high + 1] - total[low]) / (high + 1 - low)
+
+
+def floor_of(frequencies: Array, density: Array, above: float) -> float:
+    """Return the level of white noise above a frequency, robust to lines in it."""
+    tail = density[frequencies > above]
+    return float(np.median(tail) / np.log(2.0)) if tail.size else 0.0
+
+
+def choose_cutoff(displacement: Array, step: float, *, where: str = "") -> float:
+    """Return the end of the band in which displacement stands 20 dB over its noise floor, Hz.
+
+    Raises
+    ------
+    InputError
+        Where the displacement nowhere stands clear of its noise.
+    """
+    frequencies, density = power_density(displacement - displacement.mean(), step)
+    nyquist = frequencies[-1]
+    floor = floor_of(frequencies, density, 0.6 * nyquist)
+    clear = np.flatnonzero(smooth(density) > _SIGNAL_TO_NOISE * floor)
+    if clear.size == 0:
+        raise InputError(
+            "displacement",
+            expected="20 dB above its noise in some band",
+            found="noise at all frequencies",
+            where=where,
+        )
+    return float(min(max(frequencies[clear[-1]], 8.0 * frequencies[1]), _NYQUIST_SHARE * nyquist))
+
+
+def _measured(record: Record, usable: slice, motion: Motion, cutoff: float) -> Motion:
+    """Return the motion with measured velocity and acceleration in place of derivatives."""
+    step = record.step
+    columns = {
+        name: low_pass(column[usable], step, cutoff=cutoff)
+        for name, column in (("velocity", record.velocity), ("acceleration", record.acceleration))
+        if column is not None
+    }
+    if not columns:
+        return motion
+    return Motion(
+        motion.time,
+        motion.displacement,
+        columns.get("velocity", motion.velocity),
+        columns.get("acceleration", motion.acceleration),
+        motion.differentiate,
+        motion.operator,
+    )
+
+
+def _line_variance(
+    displacement: Array, force: Array, step: float, cutoff: float, lines: Array
+) -> tuple[Array, float, float]:
+    """Return noise density of force at `lines`, and the rms noise of force and displacement."""
+    frequencies, of_x = power_density(displacement - displacement.mean(), step)
+    _, of_f = power_density(force - force.mean(), step)
+    nyquist = frequencies[-1]
+    start = min(1.3 * cutoff, 0.95 * nyquist)
+    force_floor = floor_of(frequencies, of_f, start)
+    x_floor = floor_of(frequencies, of_x, max(start, 0.6 * nyquist))
+    gain = smooth(of_f) / np.maximum(smooth(of_x), 1e-300)
+    density = force_floor + x_floor * np.interp(lines, frequencies, gain)
+    return density, float(np.sqrt(force_floor * nyquist)), float(np.sqrt(x_floor * nyquist))
+
+
+def _projection(start: int, stop: int, taper: Array, count: int) -> Callable[[Array], Lines]:
+    scale = np.sqrt(2.0 / ((stop - start) * np.sum(taper**2)))
+
+    def project(columns: Array) -> Lines:
+        lines = np.fft.rfft(columns[..., start:stop] * taper, axis=-1)[..., :count] * scale
+        lines[..., 0] /= np.sqrt(2.0)
+        return np.asarray(lines, dtype=np.complex128)
+
+    return project
+
+
+def observe_band(record: Record, usable: slice, kind: str) -> Observation:
+    """Return the observation of a sweep, a random record, an earthquake or a trajectory.
+
+    Parameters
+    ----------
+    record : Record
+        With a displacement, uniformly sampled.
+    usable : slice
+        Samples to use.
+    kind : str
+        Recorded in the result.
+
+    Returns
+    -------
+    Observation
+        With up to sixteen windows.
+    """
+    if record.displacement is None:
+        raise InputError("displacement", expected="given", where=record.file)
+    step = record.step
+    time, x, force = record.time[usable], record.displacement[usable], record.force[usable]
+    cutoff = choose_cutoff(x, step, where=record.file)
+    reference = x - x[0]
+
+    def differentiate(orders: Array) -> Array:
+        return np.asarray(band_limited_derivative(reference, orders, step, cutoff=cutoff))
+
+    position, velocity, acceleration = differentiate(np.array([0.0, 1.0, 2.0]))
+    motion = Motion(
+        time, position + x[0], velocity, acceleration, differentiate, "band-limited"
+    )
+    motion = _measured(record, usable, motion, cutoff)
+    edge = min(int(np.ceil(1.0 / (cutoff * step))), time.size // 20)
+    inner = time.size - 2 * edge
+    duration = inner * step
+    count = int(np.clip(duration * cutoff / _LINES_PER_WINDOW, 1, _MAX_WINDOWS))
+    ends = edge + np.linspace(0, inner, count + 1).astype(int)
+    windows = []
+    noise = (0.0, 0.0)
+    for start, stop in zip(ends[:-1], ends[1:], strict=True):
+        size = int(stop - start)
+        lines = int(np.floor(cutoff * size * step)) + 1
+        taper = tukey(size, _TAPER)
+        project = _projection(int(start), int(stop), taper, lines)
+        frequencies = np.arange(lines) / (size * step)
+        density, *levels = _line_variance(x, force, step, cutoff, frequencies)
+        noise = (levels[0], levels[1])
+        measured = project(force)
+        power = float(np.mean(force**2))
+        variance = np.maximum(density / (2.0 * size * step), _RELATIVE_FLOOR**2 * power)
+        v_rms = float(np.std(velocity[start:stop]))
+        x_rms = float(np.std(x[start:stop]))
+        windows.append(
+            Window(
+                omega=2.0 * np.pi * frequencies,
+                force=measured,
+                variance=variance,
+                project=project,
+                frequency=v_rms / (2.0 * np.pi * x_rms) if x_rms else 0.0,
+                amplitude=float(np.sqrt(2.0) * x_rms),
+                speed=float(np.sqrt(2.0) * v_rms),
+                rest=0.0,
+                share=size / inner,
+            )
+        )
+    return Observation(
+        record=record,
+        kind=kind,
+        motion=motion,
+        windows=tuple(windows),
+        time=time,
+        measured=np.asarray(low_pass(force, step, cutoff=cutoff)),
+        at_samples=lambda column: np.asarray(low_pass(column, step, cutoff=cutoff)),
+        displacement_noise=noise[1],
+        force_noise=noise[0],
+        cutoff=cutoff,
+        usable=usable,
+    )
+
+
+def observe_periodic(record: Record, usable: slice, period: int) -> Observation:
+    """Return the observation of a record that repeats every `period` samples.
+
+    Periods are averaged; what does not repeat is the noise. Derivatives are spectral.
+    """
+    if record.displacement is None:
+        raise InputError("displacement", expected="given", where=record.file)
+    step = record.step
+    repeats = record.displacement[usable].size // period
+    stop = usable.start + repeats * period if usable.start else repeats * period
+    usable = slice(usable.start or 0, stop)
+    each_x = record.displacement[usable].reshape(repeats, period)
+    each_f = record.force[usable].reshape(repeats, period)
+    x, force = each_x.mean(axis=0), each_f.mean(axis=0)
+    mean = float(x.mean())
+    cutoff = choose_cutoff(np.tile(x, 2), step, where=record.file)
+    count = int(np.floor(cutoff * period * step)) + 1
+    keep = np.fft.rfft(x - mean)
+    keep[count:] = 0.0
+    smooth_x = np.fft.irfft(keep, n=period)
+
+    def differentiate(orders: Array) -> Array:
+        return np.asarray(spectral_derivative(smooth_x, orders, step))
+
+    _, velocity, acceleration = differentiate(np.array([0.0, 1.0, 2.0]))
+    time = record.time[usable][:period]
+    motion = Motion(
+        time, smooth_x + mean, velocity, acceleration, differentiate, "weyl", periodic=True
+    )
+    scale = np.sqrt(2.0) / period
+
+    def project(columns: Array) -> Lines:
+        lines = np.fft.rfft(columns, axis=-1)[..., :count] * scale
+        lines[..., 0] /= np.sqrt(2.0)
+        return np.asarray(lines, dtype=np.complex128)
+
+    lines = project(force)
+    spread = project(each_f - force)
+    freedom = max(repeats - 1, 1)
+    per_line = np.sum(np.abs(spread) ** 2, axis=0) / (2.0 * freedom * repeats)
+    power = float(np.mean(force**2))
+    variance = np.maximum(smooth(per_line), _RELATIVE_FLOOR**2 * power)
+    x_rms, v_rms = float(np.std(x)), float(np.std(velocity))
+    noise_f = float(np.sqrt(np.sum((each_f - force) ** 2) / (freedom * period)))
+    noise_x = float(np.sqrt(np.sum((each_x - x) ** 2) / (freedom * period)))
+    window = Window(
+        omega=2.0 * np.pi * np.arange(count) / (period * step),
+        force=lines,
+        variance=variance,
+        project=project,
+        frequency=v_rms / (2.0 * np.pi * x_rms),
+        amplitude=float(np.sqrt(2.0) * x_rms),
+        speed=float(np.sqrt(2.0) * v_rms),
+        rest=float(np.mean((each_f - force) ** 2)),
+    )
+    return Observation(
+        record=record,
+        kind="periodic",
+        motion=motion,
+        windows=(window,),
+        time=record.time[usable],
+        measured=record.force[usable],
+        at_samples=lambda column: np.tile(column, repeats),
+        displacement_noise=noise_x,
+        force_noise=noise_f,
+        cutoff=cutoff,
+        usable=usable,
+    )

@@ -1,0 +1,183 @@
+"""Sine tests: motion and force as harmonics, exact for any number of cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.optimize import nnls
+
+from discover.motion_fit.noise import density_at_lines
+from discover.motion_fit.observation import Lines, Observation, Window, real_rows
+from discover.records import Record
+from discover.sine_fit import harmonic_design
+from models.checks import Array, InputError
+from models.fractional import harmonic_factors
+from models.motion import Motion, harmonic_motion
+
+HARMONICS = 31  # of the force; friction's fall off as 1/k, so further ones decide nothing
+GRID = 1024  # points of the one cycle kept for steady-state simulation
+_RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights stay finite
+_PHASES = 360
+
+
+def _lines(solution: Array, count: int) -> Lines:
+    """Return lines from least-squares coefficients (1 + 2 count + ..., ...), mean square kept."""
+    pairs = solution[1 : 2 * count + 1].reshape(count, 2, -1)
+    phasors = (pairs[:, 0] + 1j * pairs[:, 1]) / np.sqrt(2.0)
+    lines = np.concatenate((solution[:1].reshape(1, -1).astype(np.complex128), phasors))
+    return lines.reshape((count + 1, *solution.shape[1:]))
+
+
+def _motion_at(time: Array, frequency: float, displacement: Lines) -> Motion:
+    """Return the steady-state motion at the samples themselves.
+
+    Terms then pass the very sampling that the force passed, and a jump of friction aliases in
+    both alike.
+    """
+    omega = 2.0 * np.pi * frequency * np.arange(displacement.size)
+    waves = harmonic_design(time, frequency, displacement.size - 1)
+
+    def differentiate(orders: Array) -> Array:
+        phasors = harmonic_factors(orders, omega) * displacement
+        pairs = np.stack((phasors[:, 1:].real, phasors[:, 1:].imag), axis=-1)
+        flat = np.concatenate((phasors[:, :1].real, pairs.reshape(orders.size, -1)), axis=1)
+        return np.asarray(flat @ waves.T)
+
+    x, v, a = differentiate(np.array([0.0, 1.0, 2.0]))
+    return Motion(time, x, v, a, differentiate, "weyl")
+
+
+def observe_sine(
+    record: Record,
+    usable: slice,
+    frequency: float,
+    displacement: Lines | None,
+    displacement_noise: float,
+) -> Observation:
+    """Return the observation of a sine test.
+
+    Parameters
+    ----------
+    record : Record
+        With or without a displacement.
+    usable : slice
+        Samples in the steady state.
+    frequency : float
+        Hz.
+    displacement : ndarray of complex, shape (H + 1,), or None
+        Mean and significant harmonics of the displacement, m, as phasors at the record's t = 0;
+        None where the record has no displacement, and then its labelled amplitude is used.
+    displacement_noise : float
+        m, root mean square.
+
+    Returns
+    -------
+    Observation
+        With one window of up to 31 harmonics.
+
+    Raises
+    ------
+    InputError
+        Where fewer than one and a half cycles are usable, or the sampling resolves no harmonic.
+    """
+    time, force = record.time[usable], record.force[usable]
+    duration = float(time[-1] - time[0]) * time.size / (time.size - 1)
+    if duration * frequency < 1.4:
+        raise InputError(
+            "usable cycles",
+            expected="at least 1.5",
+            found=f"{duration * frequency:.2g}",
+            where=record.file,
+        )
+    count = int(min(HARMONICS, 0.4 * time.size / (duration * frequency), (time.size - 4) // 3))
+    if count < 1:
+        raise InputError(
+            "sampling", expected="above 2.5 times the frequency", found="less", where=record.file
+        )
+    design = harmonic_design(time, frequency, count, trend=duration * frequency > 2.0)
+    factor = cho_factor(design.T @ design)
+    solution = cho_solve(factor, design.T @ force)
+    residual = force - design @ solution
+    drift = float(solution[-1]) if design.shape[1] % 2 == 0 else 0.0
+    lines = _lines(solution, count)
+
+    def project(columns: Array) -> Lines:
+        flat = columns.reshape(-1, time.size)
+        found = _lines(cho_solve(factor, design.T @ flat.T), count).T
+        return found.reshape((*columns.shape[:-1], count + 1))
+
+    multiples = frequency * np.arange(count + 1)
+    if record.uniform:
+        density = density_at_lines(
+            residual, record.step, multiples, multiples, half_width=0.5 * frequency
+        )
+    else:
+        freedom = max(time.size - design.shape[1], 1)
+        density = np.full(count + 1, 2.0 * duration / time.size * (residual @ residual) / freedom)
+    power = float(np.sum(np.abs(lines) ** 2))
+    variance = np.maximum(density / (2.0 * duration), _RELATIVE_FLOOR**2 * power)
+    fitted_phase = displacement is None
+    if displacement is None:
+        displacement = _fit_phase(record, lines, project, time, frequency, variance)
+    motion = _motion_at(time, frequency, displacement)
+    noise = float(np.sqrt(residual @ residual / max(time.size - design.shape[1], 1)))
+    speed = 2.0 * np.pi * frequency * float(abs(displacement[1]))
+    window = Window(
+        omega=2.0 * np.pi * multiples,
+        force=lines,
+        variance=variance,
+        project=project,
+        frequency=frequency,
+        amplitude=float(abs(displacement[1])),
+        speed=speed,
+        rest=float(residual @ residual / time.size),
+    )
+    return Observation(
+        record=record,
+        kind="sine",
+        motion=motion,
+        cycle=harmonic_motion(displacement, frequency, samples=GRID),
+        windows=(window,),
+        time=time,
+        measured=force,
+        at_samples=lambda column: column,
+        displacement_noise=displacement_noise,
+        force_noise=noise,
+        cutoff=None,
+        phase_fitted=fitted_phase,
+        drift=drift,
+        usable=usable,
+    )
+
+
+def _fit_phase(
+    record: Record,
+    force: Lines,
+    project: Callable[[Array], Lines],
+    time: Array,
+    frequency: float,
+    variance: Array,
+) -> Lines:
+    """Return the phasors of a pure sine in the phase that explains the force best.
+
+    The fundamental alone can't tell the phase from a mixture of inertance and damping; physical
+    signs and the harmonics of friction and quadratic damping can.
+    """
+    if record.amplitude is None:
+        raise InputError(
+            "amplitude", expected="given where displacement is absent", where=record.file
+        )
+    harmonic = np.arange(force.size)
+    weight = 1.0 / np.sqrt(variance + 1e-4 * np.sum(np.abs(force) ** 2) / np.maximum(harmonic, 1))
+    phases = 2.0 * np.pi * np.arange(_PHASES) / _PHASES
+    misfit = np.empty(_PHASES)
+    for index, phase in enumerate(phases):
+        phasors = [0.0, -1j * record.amplitude * np.exp(1j * phase)]
+        motion = _motion_at(time, frequency, np.array(phasors))
+        v = motion.velocity
+        lines = project(np.stack([motion.acceleration, v, v * np.abs(v), np.sign(v)]))
+        lines /= np.linalg.norm(lines, axis=1)[:, None]
+        misfit[index] = nnls(real_rows(lines * weight).T, real_rows(force * weight))[1]
+    return np.array([0.0, -1j * record.amplitude * np.exp(1j * phases[misfit.argmin()])])

@@ -1,0 +1,122 @@
+"""A record ready for regression: its motion, and the spectral lines of its force.
+
+Regression works on spectral lines and not on samples. For a sine test the lines are the harmonics
+of the force, fitted over all usable cycles; for other records the discrete spectrum of tapered
+windows up to the band's end. Both are linear maps of the force, so a term passes the same map,
+no phase is lost, and what the records' noise does to each line is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from discover.records import Record
+from models.checks import Array
+from models.motion import Motion
+
+Lines = NDArray[np.complex128]
+
+
+def real_rows(lines: Lines) -> Array:
+    """Return real and imaginary parts of (..., L) lines as (..., 2 L) rows."""
+    return np.concatenate((lines.real, lines.imag), axis=-1)
+
+
+@dataclass(frozen=True)
+class Window:
+    """A stretch of a record over which its lines are taken; all of it in a sine test.
+
+    Lines are scaled so that the sum of their squared magnitudes is the mean square of the signal.
+    """
+
+    omega: Array
+    """(L,) rad/s of the lines."""
+    force: Lines
+    """(L,) lines of the measured force, N."""
+    variance: Array
+    """(L,) noise variance of the real (and of the imaginary) part of each line, N^2."""
+    project: Callable[[Array], Lines]
+    """Maps columns on the motion's grid (..., N) to their lines (..., L)."""
+    frequency: float
+    """Hz: of the test, or the mean frequency |v|/|x| of the window."""
+    amplitude: float
+    """m: of the test, or root two times the displacement's standard deviation."""
+    speed: float
+    """m/s: velocity amplitude, likewise."""
+    rest: float
+    """N^2: mean square of the measured force that is in none of the lines (noise, in a sine)."""
+    share: float = 1.0
+    """Part of the record's duration."""
+
+    @property
+    def power(self) -> float:
+        """Mean square of the measured force, N^2."""
+        return float(np.sum(np.abs(self.force) ** 2)) + self.rest
+
+    @property
+    def noise_power(self) -> float:
+        """Mean square of the force's noise, N^2."""
+        return self.rest + float(2.0 * np.sum(self.variance))
+
+
+@dataclass(frozen=True)
+class Observation:
+    """A record with its motion and its windows."""
+
+    record: Record
+    """As read."""
+    kind: str
+    """"sine", "periodic", "transient" or "trajectory"."""
+    motion: Motion
+    """At the usable samples (of one period where they repeat exactly)."""
+    windows: tuple[Window, ...]
+    """At least one."""
+    time: Array
+    """(M,) s: the usable samples."""
+    measured: Array
+    """(M,) N: the usable force; low-passed to the band where the record is not a sine test."""
+    at_samples: Callable[[Array], Array]
+    """Maps a column on the motion's grid (N,) to the usable samples (M,)."""
+    displacement_noise: float
+    """m, root mean square."""
+    force_noise: float
+    """N, root mean square."""
+    cutoff: float | None
+    """Hz: end of the band; None for a sine test."""
+    phase_fitted: bool = False
+    """True where the record has no displacement and the motion's phase was fitted."""
+    drift: float = 0.0
+    """N/s: straight trend of the force that the lines exclude."""
+    cycle: Motion | None = None
+    """One cycle of a sine test on a dense grid, for steady-state simulation; None otherwise."""
+    usable: slice = field(default_factory=lambda: slice(None))
+    """Samples of the record that are used."""
+
+    @property
+    def file(self) -> str:
+        """Name of the record."""
+        return self.record.file
+
+    @property
+    def held_out(self) -> bool:
+        """True where the record is only predicted."""
+        return self.record.held_out
+
+    @property
+    def frequency(self) -> float:
+        """Hz, mean over windows."""
+        return float(np.mean([w.frequency for w in self.windows]))
+
+    @property
+    def amplitude(self) -> float:
+        """m, greatest over windows."""
+        return max(w.amplitude for w in self.windows)
+
+    @property
+    def speed(self) -> float:
+        """m/s, greatest over windows."""
+        return max(w.speed for w in self.windows)

@@ -1,0 +1,243 @@
+"""Weighted least squares on a chosen set of terms, with at most two continuous shapes.
+
+The shapes are profiled out (variable projection): for every trial value the linear problem is
+solved exactly, on a triangle, so a fit costs microseconds whatever the number of samples.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import minimize, minimize_scalar
+
+from discover.library.dictionary import DELAY, Dictionary
+from discover.library.family import Family
+from discover.triangle import Triangle
+from models.checks import Array, InputError
+from models.constitutive import FittedTerm
+from models.terms import find_term
+
+_GRID = 61
+_TINY = 1e-12
+
+
+@dataclass(frozen=True)
+class Support:
+    """Which terms stand in a fit: fixed columns, and families with a free or a fixed shape."""
+
+    plain: tuple[str, ...]
+    """Ids of fixed columns."""
+    free: tuple[str, ...] = ()
+    """Ids of families whose shape is fitted; at most two."""
+    fixed: tuple[tuple[str, float], ...] = ()
+    """Families with a shape that is given."""
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """All ids, those with a shape first."""
+        return (*self.free, *(i for i, _ in self.fixed), *self.plain)
+
+    @property
+    def parameters(self) -> int:
+        """Number of fitted numbers."""
+        return len(self.plain) + 2 * len(self.free) + len(self.fixed)
+
+
+@dataclass(frozen=True)
+class SupportFit:
+    """Least squares on a support."""
+
+    support: Support
+    """The terms."""
+    shapes: tuple[float, ...]
+    """Shape of each family, free ones first."""
+    coefficients: Array
+    """(k,) of the columns, in the order of `Support.ids`, in the dictionary's scaling."""
+    chi2: float
+    """Whitened squared misfit, ||R c - y||^2."""
+    valid: bool
+    """False where a coefficient that can't be negative is."""
+    weights: Array = field(repr=False)
+    """(K, k): the fit's columns as combinations of the dictionary's."""
+
+    @property
+    def combined(self) -> Array:
+        """(K,) coefficients on the dictionary's columns."""
+        result: Array = self.weights @ self.coefficients
+        return result
+
+
+def _unit(identifier: str, dictionary: Dictionary) -> Array:
+    vector = np.zeros(dictionary.size)
+    vector[dictionary.index(identifier)] = 1.0
+    return vector
+
+
+def _family(identifier: str, dictionary: Dictionary) -> tuple[Family, slice]:
+    found = dictionary.family(identifier)
+    if found is None:
+        raise InputError("term", expected="in the library", found=identifier)
+    return found
+
+
+def _shaped(identifier: str, value: float, dictionary: Dictionary) -> Array:
+    family, where = _family(identifier, dictionary)
+    vector = np.zeros(dictionary.size)
+    vector[where] = family.weights(value)[:, 0]
+    return vector
+
+
+def _signs_hold(ids: Sequence[str], coefficients: Array) -> bool:
+    return all(
+        i == DELAY or not find_term(i).nonnegative or c >= 0.0
+        for i, c in zip(ids, coefficients, strict=True)
+    )
+
+
+def solve(columns: Array, target: Array) -> tuple[Array, float]:
+    """Return coefficients and squared misfit of a small least-squares problem.
+
+    Columns are scaled to unit length first; a column that adds nothing gets a coefficient of
+    the least norm.
+    """
+    norms = np.linalg.norm(columns, axis=0)
+    norms[norms == 0.0] = 1.0
+    coefficients = np.linalg.lstsq(columns / norms, target, rcond=1e-13)[0] / norms
+    misfit = target - columns @ coefficients
+    return coefficients, float(misfit @ misfit)
+
+
+class ProfiledFit:
+    """Fits of many supports on one triangle."""
+
+    def __init__(self, triangle: Triangle, dictionary: Dictionary) -> None:
+        self.triangle = triangle
+        self.dictionary = dictionary
+        self._grids: dict[str, tuple[Array, Array]] = {}
+        self.energy = float(triangle.target @ triangle.target)
+
+    def _grid(self, identifier: str) -> tuple[Array, Array]:
+        """Return trial shapes (G,) and their columns (m, G) on the triangle."""
+        if identifier not in self._grids:
+            family, where = _family(identifier, self.dictionary)
+            values = np.linspace(family.lower, family.upper, _GRID)
+            self._grids[identifier] = (
+                values,
+                self.triangle.columns[:, where] @ family.weights(values),
+            )
+        return self._grids[identifier]
+
+    def profile(self, identifier: str, base: Array) -> tuple[Array, Array]:
+        """Return trial shapes (G,) and the squared misfit beside base columns (m, k) at each."""
+        values, columns = self._grid(identifier)
+        target = self.triangle.target
+        if base.shape[1]:
+            norms = np.linalg.norm(base, axis=0)
+            q, _ = np.linalg.qr(base / np.where(norms > 0.0, norms, 1.0))
+            target = target - q @ (q.T @ target)
+            left = columns - q @ (q.T @ columns)
+        else:
+            left = columns
+        power = np.sum(left**2, axis=0)
+        gain = (left.T @ target) ** 2 / np.maximum(power, _TINY * np.sum(columns**2, axis=0))
+        return values, float(target @ target) - gain
+
+    def fit(self, support: Support) -> SupportFit:
+        """Return the least-squares fit of a support.
+
+        Raises
+        ------
+        InputError
+            For more than two free shapes, or a term that the dictionary does not hold.
+        """
+        if len(support.free) > 2:
+            raise InputError("free shapes", expected="at most two", found=f"{len(support.free)}")
+        base_weights = [_shaped(i, v, self.dictionary) for i, v in support.fixed]
+        base_weights += [_unit(i, self.dictionary) for i in support.plain]
+        stacked = np.array(base_weights).T if base_weights else np.empty((self.dictionary.size, 0))
+        base = self.triangle.columns @ stacked
+        shapes = self._search(support.free, base)
+        return self._at(support, shapes, stacked)
+
+    def at(self, support: Support, shapes: Sequence[float]) -> SupportFit:
+        """Return the linear fit with the free shapes held."""
+        base_weights = [_shaped(i, v, self.dictionary) for i, v in support.fixed]
+        base_weights += [_unit(i, self.dictionary) for i in support.plain]
+        stacked = np.array(base_weights).T if base_weights else np.empty((self.dictionary.size, 0))
+        return self._at(support, tuple(shapes), stacked)
+
+    def _at(self, support: Support, shapes: tuple[float, ...], stacked: Array) -> SupportFit:
+        shaped = [_shaped(i, v, self.dictionary) for i, v in zip(support.free, shapes, strict=True)]
+        weights = np.column_stack([*shaped, stacked]) if shaped else stacked
+        if weights.shape[1] == 0:
+            empty = np.empty(0)
+            return SupportFit(support, (), empty, self.energy, True, weights)
+        coefficients, chi2 = solve(self.triangle.columns @ weights, self.triangle.target)
+        valid = _signs_hold(support.ids, coefficients)
+        every = (*shapes, *(v for _, v in support.fixed))
+        return SupportFit(support, every, coefficients, chi2, valid, weights)
+
+    def _search(self, free: tuple[str, ...], base: Array) -> tuple[float, ...]:
+        if not free:
+            return ()
+        if len(free) == 1:
+            values, misfit = self.profile(free[0], base)
+            return (self._refine_one(free[0], base, values, misfit),)
+        first_values, first_columns = self._grid(free[0])
+        table = np.array(
+            [
+                self.profile(free[1], np.column_stack([base, first_columns[:, g]]))[1]
+                for g in range(first_values.size)
+            ]
+        )
+        second_values = self._grid(free[1])[0]
+        i, j = np.unravel_index(int(table.argmin()), table.shape)
+        start = np.array([first_values[i], second_values[j]])
+        bounds = [(v[0], v[-1]) for v in (first_values, second_values)]
+
+        def misfit_at(point: Array) -> float:
+            shaped = [
+                self.triangle.columns @ _shaped(f, float(p), self.dictionary)
+                for f, p in zip(free, point, strict=True)
+            ]
+            return solve(np.column_stack([*shaped, base]), self.triangle.target)[1]
+
+        best = minimize(
+            misfit_at, start, method="Nelder-Mead", bounds=bounds, options={"xatol": 1e-5}
+        )
+        return (float(best.x[0]), float(best.x[1]))
+
+    def _refine_one(self, identifier: str, base: Array, values: Array, misfit: Array) -> float:
+        g = int(misfit.argmin())
+        family, where = _family(identifier, self.dictionary)
+        columns = self.triangle.columns[:, where]
+
+        def misfit_at(value: float) -> float:
+            column = columns @ family.weights(value)
+            return solve(np.column_stack([column, base]), self.triangle.target)[1]
+
+        low, high = values[max(g - 1, 0)], values[min(g + 1, values.size - 1)]
+        best = minimize_scalar(
+            misfit_at, bounds=(low, high), method="bounded", options={"xatol": 1e-7}
+        )
+        ends = [(misfit_at(v), float(v)) for v in (low, high) if v in (values[0], values[-1])]
+        return min([(float(best.fun), float(best.x)), *ends])[1]
+
+
+def fitted_terms(fit: SupportFit, dictionary: Dictionary) -> tuple[FittedTerm, ...]:
+    """Return the fit's terms with SI coefficients (the delay excepted)."""
+    result = []
+    families = (*fit.support.free, *(i for i, _ in fit.support.fixed))
+    for position, identifier in enumerate(fit.support.ids):
+        value = float(fit.coefficients[position])
+        if position < len(families):
+            family, _ = _family(identifier, dictionary)
+            shape = fit.shapes[position]
+            si = value * family.reference**-shape
+            result.append(FittedTerm(identifier, si, {family.parameter: shape}))
+        elif identifier != DELAY:
+            column = dictionary.columns[dictionary.index(identifier)]
+            result.append(FittedTerm(identifier, value, dict(column.shape)))
+    return tuple(result)
