@@ -1,0 +1,1 @@
+"""Pictures as inline SVG: the one place that draws."""

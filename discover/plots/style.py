@@ -1,0 +1,172 @@
+"""How every picture looks: a colour-blind-safe palette, one type scale, SVG without pyplot."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import StringIO
+from typing import Any
+from xml.sax.saxutils import escape, quoteattr
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+INK = "#1d2733"
+"""Text and measured curves."""
+MUTED = "#5f6b7a"
+"""Secondary text, axes, reference lines."""
+GRID = "#e3e8ee"
+"""Grid lines."""
+MODEL = "#d55e00"
+"""The model's curve."""
+ACCENT = "#0072b2"
+"""Bars and the boundary."""
+
+STRUCTURE_COLOURS = {
+    "FOIM": "#0072b2",
+    "IOIM-linear": "#e69f00",
+    "IOIM-laminar": "#009e73",
+    "IOIM-turbulent": "#d55e00",
+    "other": "#8d5aa6",
+    "": "#8a94a0",
+}
+"""Okabe and Ito's colours, one a structure ("" where a record has none)."""
+
+STRUCTURE_MARKERS = {
+    "FOIM": "o",
+    "IOIM-linear": "s",
+    "IOIM-laminar": "^",
+    "IOIM-turbulent": "D",
+    "other": "h",
+    "": "X",
+}
+"""A shape beside the colour, so that neither carries the meaning alone."""
+
+
+def record_marker(structure: str, *, held_out: bool, size: float = 8.0) -> dict[str, Any]:
+    """Return the marker of one record, hollow where it is held out, with its legend label."""
+    colour = STRUCTURE_COLOURS.get(structure, STRUCTURE_COLOURS["other"])
+    name = structure or "in no band"
+    return {
+        "linestyle": "none",
+        "marker": STRUCTURE_MARKERS.get(structure, STRUCTURE_MARKERS["other"]),
+        "markersize": size,
+        "markerfacecolor": "white" if held_out else colour,
+        "markeredgecolor": colour if held_out else "white",
+        "markeredgewidth": 1.6 if held_out else 0.7,
+        "label": f"{name}, held out" if held_out else name,
+        "zorder": 4,
+    }
+
+
+_FONTS = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
+
+_STYLE = {
+    "svg.fonttype": "none",
+    "text.parse_math": False,
+    "font.family": "DejaVu Sans",
+    "font.size": 10.0,
+    "axes.titlesize": 10.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.titlepad": 8.0,
+    "axes.labelsize": 10.0,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": "#aab4c0",
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": GRID,
+    "grid.linewidth": 0.8,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.labelsize": 9.0,
+    "ytick.labelsize": 9.0,
+    "text.color": INK,
+    "legend.frameon": False,
+    "legend.fontsize": 9.0,
+    "lines.linewidth": 1.6,
+    "figure.facecolor": "white",
+}
+
+
+@contextmanager
+def house_style() -> Iterator[None]:
+    """Apply the type scale and colours for the pictures drawn inside, and nowhere else."""
+    with matplotlib.rc_context(_STYLE):
+        yield
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Return an empty figure of `width` by `height`, CSS pixels at the page's natural size."""
+    return Figure(figsize=(width / 96.0, height / 96.0), dpi=96, layout="constrained")
+
+
+def to_svg(figure: Figure, *, name: str, title: str) -> str:
+    """Return `figure` as one ``<svg>`` element that can stand in a page beside others.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        Drawn inside `house_style`.
+    name : str
+        Prefix of every id, unique on the page; letters, digits and hyphens.
+    title : str
+        What a screen reader says of the picture.
+
+    Examples
+    --------
+    >>> with house_style():
+    ...     text = to_svg(new_figure(100, 80), name="empty", title="Nothing & more")
+    >>> text.startswith("<svg"), "<title>Nothing &amp; more</title>" in text
+    (True, True)
+    """
+    stream = StringIO()
+    with matplotlib.rc_context({"svg.hashsalt": name}):
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    text = stream.getvalue()
+    text = text[text.index("<svg") :].strip()
+    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    text = re.sub(r'\bid="', f'id="{name}-', text)
+    text = re.sub(r'(href="|url\()#', rf"\g<1>#{name}-", text)
+    # Inside a page a style element would reach past the picture; the root's attribute does not.
+    text = re.sub(r"<style.*?</style>", "", text, flags=re.DOTALL)
+    text = text.replace("'DejaVu Sans'", _FONTS)
+    opening = text[: text.index(">") + 1]
+    plain = re.sub(r'\b(width|height)="[\d.]+pt"', "", opening)
+    width = figure.get_figwidth() * 96.0
+    style = f"max-width:{width:.0f}px;width:100%;height:auto;stroke-linejoin:round"
+    label = quoteattr(title)
+    plain = plain.replace("<svg", f'<svg role="img" aria-label={label} style="{style}"', 1)
+    return plain + f"<title>{escape(title)}</title>" + text[len(opening) :]
+
+
+def plain_log_axis(axes: Axes, *, which: str) -> None:
+    """Label a logarithmic axis with plain numbers (0.1, 0.2, 0.5, 1 ...) instead of powers."""
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    low, high = axes.get_xlim() if which == "x" else axes.get_ylim()
+    steps = (1.0, 2.0, 5.0) if high / low < 300.0 else (1.0,)
+    axis.set_major_locator(LogLocator(base=10.0, subs=steps, numticks=20))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def scaled(peak: float, unit: str) -> tuple[float, str]:
+    """Return the factor and the prefixed unit in which `peak` (SI) reads well.
+
+    Examples
+    --------
+    >>> scaled(12_300.0, "N")
+    (0.001, 'kN')
+    >>> scaled(0.02, "m")
+    (1000.0, 'mm')
+    """
+    for limit, factor, prefix in ((1e6, 1e-6, "M"), (1e3, 1e-3, "k"), (0.1, 1.0, "")):
+        if peak >= limit:
+            return factor, prefix + unit
+    return (1e3, "m" + unit) if peak > 1e-4 else (1e6, "µ" + unit)

@@ -1,0 +1,173 @@
+"""A study as its document and figure data, written by hand: the report's input in tests."""
+
+import math
+
+import numpy as np
+
+from discover.figure_data import (
+    BaselineAnswer,
+    RecordCurves,
+    StructureProbability,
+    StudyFigureData,
+)
+
+SPEED_TO_DEAN = 798.8
+FREQUENCIES = (0.1, 0.2, 0.3, 0.5, 0.8, 1.2, 2.0, 3.0, 5.0, 8.0, 12.0, 15.0)
+AMPLITUDES = (0.005, 0.010, 0.020)
+
+
+def curves(frequency, amplitude, *, seed=0):
+    generator = np.random.default_rng(seed)
+    omega = 2.0 * math.pi * frequency
+    dean = SPEED_TO_DEAN * omega * amplitude
+    slow = dean < 100.0
+    time = np.linspace(0.0, 2.0 / frequency, 400)
+    x = amplitude * np.sin(omega * time)
+    v = amplitude * omega * np.cos(omega * time)
+    model = -370.4 * omega**2 * x + 9.1e4 * v * np.abs(v) * (not slow) + 2.2e4 * v
+    model = model + 400.0 * np.tanh(v / 1e-3)
+    noise = 0.02 * np.std(model) * generator.standard_normal(time.size)
+    held_out = frequency == 2.0
+    return RecordCurves(
+        file=f"{frequency:g}hz-{1e3 * amplitude:g}mm.csv",
+        kind="sine",
+        held_out=held_out,
+        band=0 if slow else 1,
+        structure="FOIM" if slow else "IOIM-laminar",
+        frequency=frequency,
+        amplitude=amplitude,
+        dean_paper=dean,
+        dean_standard=dean / (2.0 * math.sqrt(2.0)),
+        time=time,
+        displacement=x,
+        velocity=v,
+        force=model + noise,
+        model_force=model,
+        error_percent=1.2,
+        relative_error_percent=2.0 + 0.4 * generator.random() + (1.5 if held_out else 0.0),
+        noise_percent=2.0,
+    )
+
+
+def term(identifier, coefficient, unit, **shape):
+    error = 0.01 * abs(coefficient)
+    interval = [coefficient - 2.0 * error, coefficient + 2.0 * error]
+    return {
+        "id": identifier,
+        "coefficient": coefficient,
+        "std_error": error,
+        "interval": interval,
+        "unit": unit,
+        **shape,
+    }
+
+
+def sample_data():
+    plan = [(f, a) for f in FREQUENCIES for a in AMPLITUDES if f * f * a * 40 < 9.81 * 5]
+    records = tuple(curves(f, a, seed=i) for i, (f, a) in enumerate(plan))
+    return StudyFigureData(
+        records=records,
+        baselines=(
+            BaselineAnswer("STLSQ", 0, (("D^1.5", 812.0), ("sign(v)", 401.0)), 3.4, 0.01),
+            BaselineAnswer("SR3", 0, (), None, 0.02),
+            BaselineAnswer("STLSQ", 1, (("a", 371.0), ("v", 2.1e4)), 2.9, 0.01),
+        ),
+        probabilities=(
+            StructureProbability(0, "FOIM", 0.81),
+            StructureProbability(0, "IOIM-linear", 0.17),
+            StructureProbability(0, "other", 0.02),
+            StructureProbability(1, "IOIM-laminar", 0.985),
+            StructureProbability(1, "IOIM-turbulent", 0.015),
+        ),
+        dean_per_speed_paper=SPEED_TO_DEAN,
+        dean_per_speed_standard=SPEED_TO_DEAN / (2.0 * math.sqrt(2.0)),
+    )
+
+
+def sample_document():
+    data = sample_data()
+    files = [[r.file for r in data.records if r.band == k] for k in (0, 1)]
+    return {
+        "schema": "inerter.study/1",
+        "version": "0.1.0",
+        "seed": 0,
+        "campaign": {"title": "Device [12], sine tests", "hash": "ab" * 32},
+        "coordinate": "dean",
+        "relative_error_percent": 2.21,
+        "held_out_relative_error_percent": 3.7,
+        "identifiable": False,
+        "findings": [
+            {"level": "warning", "text": "Band 1: the records leave FOIM and IOIM-linear open."},
+            {"level": "note", "text": "force column mended", "record": files[0][0]},
+        ],
+        "bands": [
+            {
+                "lower": None,
+                "upper": 98.0,
+                "lower_hz": 0.1,
+                "upper_hz": 0.5,
+                "records": files[0],
+                "family": "fractional",
+                "structure": "FOIM",
+                "terms": [
+                    term("fractional-derivative", 1520.0, "N*s^1.48/m", order=1.48,
+                         order_interval=[1.42, 1.55]),
+                    term("coulomb-friction", 402.0, "N"),
+                ],
+                "error_percent": 1.3,
+                "relative_error_percent": 2.3,
+                "noise_percent": 2.0,
+                "probability": 0.81,
+                "equivalents": [{"structure": "IOIM-linear", "probability": 0.17}],
+            },
+            {
+                "lower": 98.0,
+                "upper": None,
+                "lower_hz": 0.5,
+                "upper_hz": 15.0,
+                "records": files[1],
+                "family": "integer",
+                "structure": "IOIM-laminar",
+                "terms": [
+                    term("inertia", 371.2, "kg"),
+                    term("quadratic-damping", 91_200.0, "N*s^2/m^2"),
+                    term("viscous-damping", 22_010.0, "N*s/m"),
+                    term("coulomb-friction", 398.0, "N"),
+                ],
+                "error_percent": 1.2,
+                "relative_error_percent": 2.2,
+                "noise_percent": 2.0,
+                "probability": 0.985,
+                "equivalents": [],
+            },
+        ],
+        "nuisance": [
+            {"id": "time-delay", "value": 2.1e-4, "interval": [1.5e-4, 2.7e-4], "unit": "s"}
+        ],
+        "boundaries": [
+            {
+                "dean": 98.0,
+                "dean_interval": [84.0, 117.0],
+                "speed": 98.0 / SPEED_TO_DEAN,
+                "frequency_hz": 1.95,
+                "bracket": [80.3, 125.5],
+            }
+        ],
+        "dean_check": {
+            "convention": "paper",
+            "criterion": 100.0,
+            "verdict": "consistent",
+            "boundary_dean": 98.0,
+            "interval": [84.0, 117.0],
+            "boundary_dean_paper": 98.0,
+            "boundary_dean_standard": 34.6,
+            "amplitude_exponent": -0.97,
+            "amplitude_exponent_interval": [-1.12, -0.84],
+        },
+        "next_test": {
+            "frequency_hz": 0.7,
+            "amplitude_m": 0.012,
+            "separates": ["FOIM", "IOIM-linear"],
+            "gain": 6.4,
+        },
+    }
