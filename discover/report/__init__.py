@@ -1,0 +1,1 @@
+"""Reports and documents, and the folder that holds them."""

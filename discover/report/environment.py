@@ -1,0 +1,93 @@
+"""The template engine: autoescaped, everything undefined is an error, filters for numbers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+import jinja2
+from markupsafe import Markup, escape
+
+from discover.report import words
+
+_SHAPES = (("order", ""), ("exponent", ""), ("stribeck_velocity", " m/s"), ("gap", " m"))
+
+
+def unit(text: str) -> Markup:
+    """Return a unit with raised exponents, as HTML.
+
+    Examples
+    --------
+    >>> str(unit("N s^1.89/m"))
+    'N\\xa0s<sup>1.89</sup>/m'
+    """
+    plain = str(escape(text)).replace("*", "·").replace(" ", "\u00a0")
+    return Markup(re.sub(r"\^([-\d.]+)", r"<sup>\1</sup>", plain))
+
+
+def shape(term: Mapping[str, Any]) -> str:
+    """Return a term's shape parameters with their intervals.
+
+    Examples
+    --------
+    >>> shape({"id": "fractional-derivative", "order": 1.48, "order_interval": [1.42, 1.55]})
+    'order 1.48 (1.42 to 1.55)'
+    """
+    parts = []
+    for name, suffix in _SHAPES:
+        if term.get(name) is None:
+            continue
+        text = f"{name.replace('_', ' ')} {words.significant(term[name], 4)}{suffix}"
+        spread = words.interval(term.get(f"{name}_interval"), 4)
+        parts.append(f"{text} ({spread})" if spread else text)
+    return ", ".join(parts)
+
+
+@cache
+def environment() -> jinja2.Environment:
+    """Return the engine for the templates that ship with the package."""
+    engine = jinja2.Environment(
+        loader=jinja2.PackageLoader("discover.report", "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    engine.filters.update(
+        term_name=words.term_name,
+        significant=words.significant,
+        percent=words.percent,
+        probability=words.probability,
+        interval=words.interval,
+        counted=words.counted,
+        band_range=words.band_range,
+        unit=unit,
+        shape=shape,
+    )
+    return engine
+
+
+def render(template: str, *, command: str, document_name: str, **values: Any) -> str:
+    """Return the page of `template`, the style sheet inlined.
+
+    Parameters
+    ----------
+    template : str
+        File name among the templates.
+    command : str
+        What a person types to repeat the result.
+    document_name : str
+        The document that lies beside the page.
+    **values
+        What the template shows; ``document`` is always among it.
+    """
+    engine = environment()
+    loader = engine.loader
+    if loader is None:
+        raise jinja2.TemplateNotFound(template)
+    sheet = Markup(loader.get_source(engine, "style.css")[0])
+    return engine.get_template(template).render(
+        command=command, document_name=document_name, stylesheet=sheet, **values
+    )

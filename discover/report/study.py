@@ -1,0 +1,138 @@
+"""The study's report: one page that needs nothing else, and its pictures as files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from markupsafe import Markup
+
+from discover.figure_data import RecordCurves, StudyFigureData
+from discover.plots.errors import error_by_record
+from discover.plots.loops import loops, representative
+from discover.plots.probabilities import probability_bars
+from discover.plots.record_map import record_map
+from discover.report.environment import render
+from discover.report.verdict import boundary_text, verdict_lines
+from discover.report.words import percent, significant
+
+
+def study_figures(document: Mapping[str, Any], data: StudyFigureData) -> dict[str, str]:
+    """Return the study's pictures by name, each one ``<svg>`` element.
+
+    Parameters
+    ----------
+    document : mapping
+        The study as in ``study.json``.
+    data : StudyFigureData
+        What the pictures need besides.
+    """
+    drawn = {
+        "map": record_map(document, data),
+        "probabilities": probability_bars(document, data),
+        "errors": error_by_record(data),
+    }
+    for number, record in enumerate(representative(data.records), start=1):
+        drawn[f"loops-{number}"] = loops(record, name=f"loops-{number}")
+    return {name: svg for name, svg in drawn.items() if svg is not None}
+
+
+def study_report(
+    document: Mapping[str, Any],
+    data: StudyFigureData,
+    figures: Mapping[str, str],
+    *,
+    command: str,
+) -> str:
+    """Return ``report.html``: self-contained, the verdict first.
+
+    Parameters
+    ----------
+    document : mapping
+        The study as in ``study.json``.
+    data : StudyFigureData
+        What the tables of records and methods show.
+    figures : mapping
+        From `study_figures`.
+    command : str
+        What a person types to repeat the study.
+    """
+    shown = representative(data.records)
+    pictures = [
+        {"svg": Markup(figures[f"loops-{i}"]), "heading": _heading(r), "caption": _caption(r)}
+        for i, r in enumerate(shown, start=1)
+    ]
+    boundaries = [boundary_text(b, document) for b in document.get("boundaries", ())]
+    verdict = [_split(line) for line in verdict_lines(document)]
+    check = {"boundary_dean": None, "amplitude_exponent": None, "to_decide": None}
+    return render(
+        "study.html",
+        command=command,
+        document_name="study.json",
+        document=document,
+        verdict=verdict,
+        figures={name: Markup(figures.get(name, "")) for name in
+                 ("map", "probabilities", "errors")},
+        map_caption=_map_caption(document, data),
+        boundaries=boundaries,
+        loops=pictures,
+        records=data.records,
+        held_out=sum(r.held_out for r in data.records),
+        dean=any(r.dean_paper is not None for r in data.records),
+        baselines=data.baselines,
+        check={**check, **document["dean_check"]},
+        next_test=_next(document),
+    )
+
+
+def _split(line: str) -> tuple[str, str]:
+    name, _, text = line.partition(": ")
+    return name, text[:1].upper() + text[1:]
+
+
+def _heading(record: RecordCurves) -> str:
+    if record.frequency and record.amplitude:
+        return f"{significant(record.frequency, 3)} Hz, {significant(1e3 * record.amplitude, 3)} mm"
+    return record.file
+
+
+def _caption(record: RecordCurves) -> str:
+    parts = [record.structure] if record.structure else []
+    if record.held_out:
+        parts.append("held out")
+    if record.relative_error_percent is not None:
+        parts.append(f"error {percent(record.relative_error_percent)} of ‖force‖")
+    if record.noise_percent is not None:
+        parts.append(f"noise {percent(record.noise_percent)}")
+    if record.dean_paper is not None:
+        parts.append(
+            f"De {significant(record.dean_paper, 3)} (paper), "
+            f"{significant(record.dean_standard, 3)} (standard convention)"
+        )
+    return " · ".join(parts)
+
+
+def _map_caption(document: Mapping[str, Any], data: StudyFigureData) -> str:
+    text = "Each mark is one sine test, its colour and shape the structure of its band."
+    if document.get("boundaries"):
+        text += " The line is the boundary, the shade its interval."
+    if data.dean_per_speed_paper:
+        convention = document["dean_check"]["convention"]
+        text += f" Dotted: constant Dean number, {convention} convention."
+    return text
+
+
+def _next(document: Mapping[str, Any]) -> str:
+    test = document.get("next_test")
+    if not test or test.get("frequency_hz") is None:
+        return ""
+    text = (
+        f"Run one more sine test at {significant(test['frequency_hz'], 3)} Hz and "
+        f"{significant(1e3 * test['amplitude_m'], 3)} mm"
+    )
+    separates = [str(s) for s in test.get("separates", ())]
+    if len(separates) == 2:
+        text += f". Of all tests within the limits it best tells {separates[0]} from {separates[1]}"
+    if test.get("gain") is not None:
+        text += f" (expected gain {significant(test['gain'], 3)} nats)"
+    return text + ". Then run the command below on the campaign with that record added."

@@ -1,0 +1,171 @@
+"""Numbers, units and names as a person reads them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+THIN_SPACE = "\u202f"
+
+_NAMES = {
+    "inertia": "inertance",
+    "quadratic-damping": "quadratic damping, v|v|",
+    "power-law-damping": "power-law damping, |v|ᵖ",
+    "coulomb-friction": "Coulomb friction, sign v",
+    "force-offset": "force offset",
+    "time-delay": "delay between channels",
+}
+
+_COORDINATES = {"speed": "speed amplitude", "frequency": "frequency"}
+
+
+def term_name(identifier: str) -> str:
+    """Return a term's id as words.
+
+    Examples
+    --------
+    >>> term_name("viscous-damping"), term_name("inertia")
+    ('viscous damping', 'inertance')
+    """
+    return _NAMES.get(identifier, identifier.replace("-", " "))
+
+
+def significant(value: float | None, digits: int = 4) -> str:
+    """Return `value` to `digits` significant digits, without needless zeros; "–" for none.
+
+    Examples
+    --------
+    >>> significant(371.249), significant(0.00021), significant(2.5e-7), significant(None)
+    ('371.2', '0.00021', '2.5×10⁻⁷', '–')
+    """
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    size = math.floor(math.log10(abs(value)))
+    if size < -4 or size > 8:
+        mantissa = f"{value / 10.0**size:.{digits - 1}f}".rstrip("0").rstrip(".")
+        power = str(size).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+        return f"{mantissa}×10{power}".replace("-", "−")
+    places = digits - 1 - size
+    text = f"{round(value, places):,.{max(0, places)}f}".replace(",", THIN_SPACE)
+    if "." in text:
+        text = text.rstrip("0").rstrip(".")
+    return text.replace("-", "−")
+
+
+def percent(value: float | None) -> str:
+    """Return a percentage to three digits at most.
+
+    Examples
+    --------
+    >>> percent(2.2104).replace(THIN_SPACE, " "), percent(None)
+    ('2.21 %', '–')
+    """
+    return "–" if value is None else f"{significant(value, 3)}{THIN_SPACE}%"
+
+
+def probability(value: float | None) -> str:
+    """Return a probability in percent that never rounds to a certainty it is not.
+
+    Examples
+    --------
+    >>> [probability(p).replace(THIN_SPACE, " ") for p in (0.8123, 0.9999, 0.0004)]
+    ['81 %', '> 99 %', '< 1 %']
+    """
+    if value is None:
+        return "–"
+    if value > 0.995:
+        return f"> 99{THIN_SPACE}%"
+    return f"< 1{THIN_SPACE}%" if value < 0.005 else f"{100.0 * value:.0f}{THIN_SPACE}%"
+
+
+def interval(ends: Sequence[float | None] | None, digits: int = 3) -> str:
+    """Return an interval's ends; "" where there is none.
+
+    Examples
+    --------
+    >>> interval([84.01, 117.3])
+    '84 to 117'
+    """
+    if not ends:
+        return ""
+    low, high = ends
+    return f"{_end(low, '−∞', digits)} to {_end(high, '∞', digits)}"
+
+
+def _end(value: float | None, instead: str, digits: int) -> str:
+    return instead if value is None else significant(value, digits)
+
+
+def listed(items: Iterable[str], last: str = "and") -> str:
+    """Return items as a list in a sentence.
+
+    Examples
+    --------
+    >>> listed(["a", "b", "c"])
+    'a, b and c'
+    """
+    parts = list(items)
+    if len(parts) < 2:
+        return "".join(parts)
+    return f"{', '.join(parts[:-1])} {last} {parts[-1]}"
+
+
+def counted(number: int, noun: str) -> str:
+    """Return a number with its noun.
+
+    Examples
+    --------
+    >>> counted(1, "record"), counted(12, "record")
+    ('1 record', '12 records')
+    """
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def coordinate_name(document: Mapping[str, Any]) -> str:
+    """Return the coordinate that bands lie on, a Dean number with its convention.
+
+    Examples
+    --------
+    >>> coordinate_name({"coordinate": "dean", "dean_check": {"convention": "standard"}})
+    'Dean number (standard convention)'
+    """
+    name = str(document["coordinate"])
+    if name == "dean":
+        return f"Dean number ({document['dean_check']['convention']} convention)"
+    return _COORDINATES.get(name, name)
+
+
+def coordinate_value(value: float, coordinate: str) -> str:
+    """Return a value of the coordinate with its unit.
+
+    Examples
+    --------
+    >>> coordinate_value(98.02, "dean"), coordinate_value(0.1227, "speed")
+    ('98', '0.123 m/s')
+    """
+    unit = {"speed": " m/s", "frequency": " Hz"}.get(coordinate, "")
+    return significant(value, 3) + unit
+
+
+def band_range(band: Mapping[str, Any], coordinate: str) -> str:
+    """Return where a band lies, in words.
+
+    Examples
+    --------
+    >>> band_range({"lower": None, "upper": 98.0}, "dean")
+    'below 98'
+    """
+    lower, upper = band.get("lower"), band.get("upper")
+    if lower is None and upper is None:
+        return "everywhere"
+    if lower is None and upper is not None:
+        return f"below {coordinate_value(upper, coordinate)}"
+    if lower is not None and upper is None:
+        return f"above {coordinate_value(lower, coordinate)}"
+    return (
+        f"{coordinate_value(float(lower or 0.0), coordinate)} to "
+        f"{coordinate_value(float(upper or 0.0), coordinate)}"
+    )
