@@ -1,0 +1,177 @@
+"""Causal convolution of records with weights by padded FFT, the weights' spectra cached."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+from models.fractional.orders import Array
+
+Complex = NDArray[np.complex128]
+WeightMaker = Callable[[Array, int], Array]
+
+DEFAULT_CACHE_BYTES = 256 * 2**20
+
+
+class SpectrumCache:
+    """Spectra of convolution weights, least recently used first out, bounded in bytes.
+
+    Parameters
+    ----------
+    limit : int
+        Bytes to keep.
+
+    Examples
+    --------
+    >>> cache = SpectrumCache(1000)
+    >>> cache.put(("gl", 0.5), np.zeros(10, dtype=complex))
+    >>> cache.get(("gl", 0.5)).size
+    10
+    """
+
+    def __init__(self, limit: int = DEFAULT_CACHE_BYTES) -> None:
+        self._limit = limit
+        self._bytes = 0
+        self._rows: OrderedDict[object, Complex] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def get(self, key: object) -> Complex | None:
+        """Return the row kept under `key`, or None."""
+        with self._lock:
+            row = self._rows.get(key)
+            if row is not None:
+                self._rows.move_to_end(key)
+            return row
+
+    def put(self, key: object, row: Complex) -> None:
+        """Keep `row` under `key`, dropping the longest unused ones where room is short."""
+        with self._lock:
+            if key in self._rows or row.nbytes > self._limit:
+                return
+            self._rows[key] = row
+            self._bytes += row.nbytes
+            while self._bytes > self._limit:
+                _, dropped = self._rows.popitem(last=False)
+                self._bytes -= dropped.nbytes
+
+    def clear(self) -> None:
+        """Forget everything."""
+        with self._lock:
+            self._rows.clear()
+            self._bytes = 0
+
+
+_CACHE = SpectrumCache()
+
+
+def clear_cache() -> None:
+    """Forget all cached weight spectra.
+
+    Examples
+    --------
+    >>> clear_cache()
+    """
+    _CACHE.clear()
+
+
+def padded_length(samples: int) -> int:
+    """Return the FFT length at which no tail wraps round into the record.
+
+    Examples
+    --------
+    >>> padded_length(100)
+    200
+    """
+    return int(scipy.fft.next_fast_len(2 * samples - 1, real=True))
+
+
+def weight_spectra(
+    scheme: str, orders: Array, samples: int, make_weights: WeightMaker
+) -> list[Complex]:
+    """Return the spectra of the first `samples` weights of each order, from the cache or made.
+
+    Parameters
+    ----------
+    scheme : str
+        Name under which the weights are cached.
+    orders : ndarray, shape (K,)
+    samples : int
+        Length N of the record.
+    make_weights : callable
+        Maps orders (k,) and a count to weights (k, count).
+
+    Returns
+    -------
+    list of K ndarrays, each of shape (L // 2 + 1,), complex
+
+    Examples
+    --------
+    >>> rows = weight_spectra("ones", np.array([0.0]), 4, lambda a, n: np.ones((a.size, n)))
+    >>> complex(rows[0][0])
+    (4+0j)
+    """
+    length = padded_length(samples)
+    keys = [(scheme, float(order), samples) for order in orders]
+    rows = [_CACHE.get(key) for key in keys]
+    missing = [i for i, row in enumerate(rows) if row is None]
+    block = _block_rows()
+    for start in range(0, len(missing), block):
+        chosen = missing[start : start + block]
+        made = scipy.fft.rfft(make_weights(orders[chosen], samples), n=length, axis=-1)
+        for i, row in zip(chosen, made, strict=True):
+            kept = np.ascontiguousarray(row) if len(chosen) == 1 else row.copy()
+            kept.setflags(write=False)
+            rows[i] = kept
+            _CACHE.put(keys[i], kept)
+    return [row for row in rows if row is not None]
+
+
+def convolve(x: Array, spectra: Sequence[Complex], scales: Array) -> Array:
+    """Convolve each record causally with the weights of each order.
+
+    Parameters
+    ----------
+    x : ndarray, shape (R, N)
+        Records.
+    spectra : sequence of K ndarrays, shape (L // 2 + 1,)
+        From `weight_spectra` for N samples.
+    scales : ndarray, shape (K,)
+        Factor of each order.
+
+    Returns
+    -------
+    ndarray, shape (K, R, N)
+        Uses as many threads as `scipy.fft.get_workers` says.
+
+    Examples
+    --------
+    >>> rows = weight_spectra("ones", np.array([0.0]), 4, lambda a, n: np.ones((a.size, n)))
+    >>> convolve(np.array([[1.0, 2.0, 3.0, 4.0]]), rows, np.array([1.0])).round(12)
+    array([[[ 1.,  3.,  6., 10.]]])
+    """
+    records, samples = x.shape
+    length = padded_length(samples)
+    bins = length // 2 + 1
+    out = np.empty((len(spectra), records, samples))
+    transformed = scipy.fft.rfft(x, n=length, axis=-1)
+    jobs = [(k, r) for k in range(len(spectra)) for r in range(records)]
+    block = min(_block_rows(), len(jobs))
+    buffer = np.empty((block, bins), dtype=np.complex128)
+    for start in range(0, len(jobs), block):
+        chosen = jobs[start : start + block]
+        for row, (k, r) in zip(buffer, chosen, strict=False):
+            np.multiply(spectra[k], transformed[r], out=row)
+        values = scipy.fft.irfft(buffer[: len(chosen)], n=length, axis=-1)
+        for row, (k, r) in zip(values, chosen, strict=True):
+            np.multiply(row[:samples], scales[k], out=out[k, r])
+    return out
+
+
+def _block_rows() -> int:
+    """Rows worked on together: enough for every thread, few enough to stay in cache."""
+    return max(2, int(scipy.fft.get_workers()))

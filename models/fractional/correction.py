@@ -1,0 +1,101 @@
+"""Starting correction: what makes the schemes exact for powers of time from the first sample."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+from scipy.special import bernoulli, rgamma
+
+from models.fractional.orders import Array
+from models.fractional.weights import convolution_weights
+
+MOMENTS = 8
+"""Samples at the start that carry the end correction of the sum."""
+HEAD_SAMPLES = 128
+"""Samples after which nothing but the scheme's own order is left."""
+
+
+@functools.cache
+def end_corrections(count: int) -> Array:
+    r"""Return e_k(m): what to add to the first samples of n^k, k = 0 .. count - 1.
+
+    The sum over samples :math:`\sum_n n^k e^{-nz}` differs from the integral
+    :math:`k!/z^{k+1}` by :math:`\sum_j \zeta(-k-j)(-z)^j/j!`, which leaves errors that decay
+    only like t^(-alpha-1). Eight samples with the opposite moments remove them, for every order
+    alike: an end correction as in Gregory's rule.
+
+    Returns
+    -------
+    ndarray, shape (count, 8)
+
+    Examples
+    --------
+    >>> bool(abs(end_corrections(1)[0].sum() + 0.5) < 1e-14)
+    True
+    """
+    numbers = bernoulli(count + MOMENTS)
+    wanted = np.zeros((MOMENTS, count))
+    for k in range(count):
+        for j in range(MOMENTS):
+            m = k + j
+            # zeta(-m) = -B_{m+1}/(m+1) for m >= 1; the sum from n = 0 of n^0 has 1 + zeta(0).
+            zeta = 0.5 if m == 0 else -numbers[m + 1] / (m + 1)
+            wanted[j, k] = -zeta
+    powers = np.arange(MOMENTS)[None, :] ** np.arange(MOMENTS)[:, None]
+    return np.ascontiguousarray(np.linalg.solve(powers.astype(np.float64), wanted).T)
+
+
+@functools.lru_cache(maxsize=64)
+def head_corrections(orders: tuple[float, ...], p: int, count: int) -> Array:
+    r"""Return what is left to add to the first outputs for n^k, k = 0 .. count - 1.
+
+    Parameters
+    ----------
+    orders : tuple of K floats
+    p : int
+        Steps of the backward difference formula.
+    count : int
+
+    Returns
+    -------
+    ndarray, shape (K, count, 128)
+        :math:`\frac{k!}{\Gamma(k+1-\alpha)}n^{k-\alpha}` less the scheme's result on
+        n^k + e_k; at n = 0 the finite part is the exact value.
+
+    Examples
+    --------
+    >>> rest = head_corrections((0.5,), 6, 6)
+    >>> bool(np.max(np.abs(rest[0, :2, -1])) < 1e-11)
+    True
+    """
+    n = np.arange(HEAD_SAMPLES, dtype=np.float64)
+    sequences = n ** np.arange(count)[:, None]
+    sequences[:, :MOMENTS] += end_corrections(count)
+    weights = convolution_weights(np.array(orders), HEAD_SAMPLES, p)
+    lags = np.arange(HEAD_SAMPLES)
+    shifts = lags[:, None] - lags[None, :]
+    causal = np.where(shifts >= 0, weights[:, np.abs(shifts)], 0.0)
+    exact = np.array([[power_derivative(k, a, n) for k in range(count)] for a in orders])
+    rest: Array = exact - np.einsum("anm,km->akn", causal, sequences, optimize=True)
+    rest.setflags(write=False)
+    return rest
+
+
+def power_derivative(k: int, order: float, n: Array) -> Array:
+    r"""Riemann-Liouville derivative of n^k: :math:`k!\,n^{k-\alpha}/\Gamma(k+1-\alpha)`.
+
+    At n = 0 its finite part.
+
+    Examples
+    --------
+    >>> power_derivative(1, 1.0, np.array([0.0, 2.0]))
+    array([1., 1.])
+    """
+    factor = math.factorial(k) * float(rgamma(k + 1.0 - order))
+    positive = n > 0.0
+    values = np.where(positive, np.where(positive, n, 1.0) ** (k - order) * factor, 0.0)
+    if order == k:
+        values[~positive] = math.factorial(k)
+    return np.asarray(values)
