@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.signal.windows import tukey
+from scipy.ndimage import median_filter
 
 from discover.motion_fit.noise import power_density
 from discover.motion_fit.observation import Lines, Observation, Window
@@ -14,7 +14,8 @@ from models.checks import Array, InputError
 from models.fractional import band_limited_derivative, low_pass, spectral_derivative
 from models.motion import Motion
 
-_SIGNAL_TO_NOISE = 100.0  # power of the displacement over its floor at the band's end
+_SIGNAL_TO_NOISE = 1000.0  # power of the displacement over its floor at the edge of the excited band
+_GUARD = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
 _NYQUIST_SHARE = 0.9
 _RELATIVE_FLOOR = 1e-6
 _TAPER = 0.1
@@ -23,13 +24,12 @@ _MAX_WINDOWS = 16
 
 
 def smooth(density: Array) -> Array:
-    """Return a power density averaged over a twelfth of an octave and at least five bins."""
-    size = density.size
-    index = np.arange(size)
-    half = np.maximum((index * 0.03).astype(int), 2)
-    total = np.concatenate(([0.0], np.cumsum(density)))
-    low, high = np.maximum(index - half, 0), np.minimum(index + half, size - 1)
-    return (total[high + 1] - total[low]) / (high + 1 - low)
+    """Return a power density's running level: the median over half a percent of the bins.
+
+    A median does not spill over the edge of an excited band, as a mean does.
+    """
+    size = 2 * max(density.size // 400, 4) + 1
+    return np.asarray(median_filter(density, size=size, mode="nearest") / np.log(2.0))
 
 
 def floor_of(frequencies: Array, density: Array, above: float) -> float:
@@ -39,7 +39,9 @@ def floor_of(frequencies: Array, density: Array, above: float) -> float:
 
 
 def choose_cutoff(displacement: Array, step: float, *, where: str = "") -> float:
-    """Return the end of the band in which displacement stands 20 dB over its noise floor, Hz.
+    """Return the end of the band in which displacement stands clear of its noise floor, Hz.
+
+    The edge is where it last stands 30 dB above the floor; the band ends a tenth below it.
 
     Raises
     ------
@@ -53,11 +55,11 @@ def choose_cutoff(displacement: Array, step: float, *, where: str = "") -> float
     if clear.size == 0:
         raise InputError(
             "displacement",
-            expected="20 dB above its noise in some band",
+            expected="30 dB above its noise in some band",
             found="noise at all frequencies",
             where=where,
         )
-    return float(min(max(frequencies[clear[-1]], 8.0 * frequencies[1]), _NYQUIST_SHARE * nyquist))
+    return float(min(max(_GUARD * frequencies[clear[-1]], 8.0 * frequencies[1]), _NYQUIST_SHARE * nyquist))
 
 
 def _measured(record: Record, usable: slice, motion: Motion, cutoff: float) -> Motion:
@@ -95,11 +97,34 @@ def _line_variance(
     return density, float(np.sqrt(force_floor * nyquist)), float(np.sqrt(x_floor * nyquist))
 
 
-def _projection(start: int, stop: int, taper: Array, count: int) -> Callable[[Array], Lines]:
-    scale = np.sqrt(2.0 / ((stop - start) * np.sum(taper**2)))
+def _pieces(size: int, cutoff: float) -> list[tuple[int, Array]]:
+    """Return start and taper of windows whose squared tapers add up to one.
+
+    Neighbours cross over within a tenth of their length, so no sample counts more than another;
+    only the ends of the record fade, over a period of the band's end or a twentieth.
+    """
+    count = int(np.clip(size * cutoff / _LINES_PER_WINDOW, 1, _MAX_WINDOWS))
+    ends = np.linspace(0, size, count + 1).astype(int)
+    half = max(int(0.5 * _TAPER * size / count), 1)
+    fade = min(int(np.ceil(1.0 / cutoff)), size // 20) or 1
+    pieces = []
+    for index in range(count):
+        first, last = index == 0, index == count - 1
+        start = 0 if first else int(ends[index]) - half
+        stop = size if last else int(ends[index + 1]) + half
+        taper = np.ones(stop - start)
+        rise, fall = (fade if first else 2 * half), (fade if last else 2 * half)
+        taper[:rise] = np.sin(0.5 * np.pi * (np.arange(rise) + 0.5) / rise)
+        taper[taper.size - fall :] *= np.cos(0.5 * np.pi * (np.arange(fall) + 0.5) / fall)
+        pieces.append((start, taper))
+    return pieces
+
+
+def _projection(inside: slice, taper: Array, count: int) -> Callable[[Array], Lines]:
+    scale = np.sqrt(2.0 / (taper.size * np.sum(taper**2)))
 
     def project(columns: Array) -> Lines:
-        lines = np.fft.rfft(columns[..., start:stop] * taper, axis=-1)[..., :count] * scale
+        lines = np.fft.rfft(columns[..., inside] * taper, axis=-1)[..., :count] * scale
         lines[..., 0] /= np.sqrt(2.0)
         return np.asarray(lines, dtype=np.complex128)
 
@@ -138,37 +163,32 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         time, position + x[0], velocity, acceleration, differentiate, "band-limited"
     )
     motion = _measured(record, usable, motion, cutoff)
-    edge = min(int(np.ceil(1.0 / (cutoff * step))), time.size // 20)
-    inner = time.size - 2 * edge
-    duration = inner * step
-    count = int(np.clip(duration * cutoff / _LINES_PER_WINDOW, 1, _MAX_WINDOWS))
-    ends = edge + np.linspace(0, inner, count + 1).astype(int)
+    pieces = _pieces(time.size, cutoff * step)
+    mass = sum(float(np.sum(taper**2)) for _, taper in pieces)
+    mean_power = float(np.mean(force**2))
     windows = []
     noise = (0.0, 0.0)
-    for start, stop in zip(ends[:-1], ends[1:], strict=True):
-        size = int(stop - start)
-        lines = int(np.floor(cutoff * size * step)) + 1
-        taper = tukey(size, _TAPER)
-        project = _projection(int(start), int(stop), taper, lines)
-        frequencies = np.arange(lines) / (size * step)
+    for start, taper in pieces:
+        size = taper.size
+        inside = slice(start, start + size)
+        count = int(np.floor(cutoff * size * step)) + 1
+        project = _projection(inside, taper, count)
+        frequencies = np.arange(count) / (size * step)
         density, *levels = _line_variance(x, force, step, cutoff, frequencies)
         noise = (levels[0], levels[1])
-        measured = project(force)
-        power = float(np.mean(force**2))
-        variance = np.maximum(density / (2.0 * size * step), _RELATIVE_FLOOR**2 * power)
-        v_rms = float(np.std(velocity[start:stop]))
-        x_rms = float(np.std(x[start:stop]))
+        variance = np.maximum(density / (2.0 * size * step), _RELATIVE_FLOOR**2 * mean_power)
+        v_rms, x_rms = float(np.std(velocity[inside])), float(np.std(x[inside]))
         windows.append(
             Window(
                 omega=2.0 * np.pi * frequencies,
-                force=measured,
+                force=project(force),
                 variance=variance,
                 project=project,
                 frequency=v_rms / (2.0 * np.pi * x_rms) if x_rms else 0.0,
                 amplitude=float(np.sqrt(2.0) * x_rms),
                 speed=float(np.sqrt(2.0) * v_rms),
                 rest=0.0,
-                share=size / inner,
+                share=float(np.sum(taper**2)) / mass,
             )
         )
     return Observation(

@@ -1,0 +1,85 @@
+"""A term is named only if it explains more than the model leaves unexplained.
+
+Where the misfit is far above the noise, what remains is an effect that no term here is, and a
+further term that takes a small part of it has likely taken something else's name. So a term's own
+gain (misfit energy without it less with it) must exceed the energy that remains above the noise.
+Where noise is the limit nothing remains, and the rule never bites: evidence alone decides.
+
+The energies are relative to each record's force, so that quiet records count as loud ones do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from discover.library.dictionary import Dictionary
+from discover.regression.support import ProfiledFit, Support
+from discover.triangle import Triangle, WindowRows, reduce_rows
+
+
+def record_power(windows: Sequence[WindowRows]) -> dict[int, float]:
+    """Return the mean square of each record's force over its windows."""
+    power: dict[int, float] = {}
+    share: dict[int, float] = {}
+    for w in windows:
+        power[w.record] = power.get(w.record, 0.0) + w.share * w.power
+        share[w.record] = share.get(w.record, 0.0) + w.share
+    return {r: max(power[r] / share[r], 1e-300) for r in power}
+
+
+def relative_triangle(windows: Sequence[WindowRows]) -> Triangle:
+    """Return the triangle with every record's rows over its force's root mean square."""
+    power = record_power(windows)
+    matrix = np.concatenate([w.matrix * np.sqrt(w.share / power[w.record]) for w in windows])
+    return Triangle(reduce_rows(matrix), int(sum(w.count.sum() for w in windows)), 0.0)
+
+
+def noise_energy(windows: Sequence[WindowRows]) -> tuple[float, float]:
+    """Return the expected misfit energy of noise in the relative triangle, and its deviation."""
+    power = record_power(windows)
+    scales = np.concatenate([w.variance * w.share / power[w.record] for w in windows])
+    counts = np.concatenate([w.count for w in windows])
+    return float(counts @ scales), float(np.sqrt(2.0 * counts @ scales**2))
+
+
+class Materiality:
+    """Judges supports by what each of their terms explains on its own."""
+
+    def __init__(self, windows: Sequence[WindowRows], dictionary: Dictionary) -> None:
+        self._engine = ProfiledFit(relative_triangle(windows), dictionary)
+        noise, deviation = noise_energy(windows)
+        self._noise = noise + 3.0 * deviation
+        self._misfit: dict[tuple[object, ...], float] = {}
+
+    def misfit(self, support: Support) -> float:
+        """Return the relative misfit energy of a support, fitted in this metric."""
+        key = (frozenset(support.plain), frozenset(support.free), frozenset(support.fixed))
+        if key not in self._misfit:
+            self._misfit[key] = self._engine.fit(support).chi2
+        return self._misfit[key]
+
+    def unexplained(self, support: Support) -> float:
+        """Return the misfit energy above the noise."""
+        return max(self.misfit(support) - self._noise, 0.0)
+
+    def weakest(self, support: Support) -> tuple[str, float]:
+        """Return the term that explains least, and its gain over what remains unexplained."""
+        left = max(self.unexplained(support), 1e-30)
+        own = self.misfit(support)
+        gains = [(i, (self.misfit(without(support, i)) - own) / left) for i in support.ids]
+        return min(gains, key=lambda g: g[1])
+
+    def holds(self, support: Support) -> bool:
+        """Return whether every term explains more than remains unexplained."""
+        return self.weakest(support)[1] >= 1.0
+
+
+def without(support: Support, identifier: str) -> Support:
+    """Return the support less one term."""
+    return Support(
+        tuple(i for i in support.plain if i != identifier),
+        tuple(i for i in support.free if i != identifier),
+        tuple((i, v) for i, v in support.fixed if i != identifier),
+    )
