@@ -64,7 +64,7 @@ def record_marker(structure: str, *, held_out: bool, size: float = 8.0) -> dict[
 
 _FONTS = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
-_STYLE = {
+_STYLE: Any = {  # keys that only newer matplotlib types spell out
     "svg.fonttype": "none",
     "text.parse_math": False,
     "font.family": "DejaVu Sans",

@@ -15,7 +15,9 @@ MANIFEST = ".inerter-files"
 """Names what was written, so that only that is ever replaced."""
 
 
-def write_folder(path: str | Path, files: Mapping[str, str | bytes], *, fresh: bool = False) -> Path:
+def write_folder(
+    path: str | Path, files: Mapping[str, str | bytes], *, fresh: bool = False
+) -> Path:
     """Write `files` as the folder `path`, all of them or none.
 
     The files go to a temporary folder beside `path`, which then takes its place. Results of an
@@ -55,7 +57,7 @@ def write_folder(path: str | Path, files: Mapping[str, str | bytes], *, fresh: b
         try:
             _fill(part, files, manifest=not fresh)
             _swap(part, target)
-        finally:
+        finally:  # after the swap there is nothing left under this name
             shutil.rmtree(part, ignore_errors=True)
     except OSError as error:
         raise _unwritable(target, error) from None
@@ -75,8 +77,9 @@ def check_replaceable(path: str | Path, *, fresh: bool = False) -> None:
     if not target.exists():
         parent = next(p for p in target.parents if p.exists())
         if not parent.is_dir() or not os.access(parent, os.W_OK):
-            raise InputError("output", expected="in a writable folder", found=str(parent),
-                             where=where)
+            raise InputError(
+                "output", expected="in a writable folder", found=str(parent), where=where
+            )
         return
     if not target.is_dir():
         raise InputError("output", expected="a folder", found="a file", where=where)
@@ -84,12 +87,20 @@ def check_replaceable(path: str | Path, *, fresh: bool = False) -> None:
     if not found:
         return
     if fresh:
-        raise InputError("output", expected="a new or empty folder",
-                         found=f"one that holds {sorted(found)[0]}", where=where)
+        raise InputError(
+            "output",
+            expected="a new or empty folder",
+            found=f"one that holds {sorted(found)[0]}",
+            where=where,
+        )
     foreign = found - _listed(target) - {MANIFEST}
     if foreign:
-        raise InputError("output", expected="a new folder or one of earlier results",
-                         found=f"one that also holds {sorted(foreign)[0]}", where=where)
+        raise InputError(
+            "output",
+            expected="a new folder or one of earlier results",
+            found=f"one that also holds {sorted(foreign)[0]}",
+            where=where,
+        )
 
 
 def _listed(target: Path) -> set[str]:
@@ -121,7 +132,7 @@ def _swap(part: Path, target: Path) -> None:
     target.rename(old / "kept")
     try:
         part.rename(target)
-    except OSError:
+    except BaseException:  # an interrupt too must not lose the earlier results
         (old / "kept").rename(target)
         raise
     finally:
@@ -129,5 +140,6 @@ def _swap(part: Path, target: Path) -> None:
 
 
 def _unwritable(target: Path, error: OSError) -> InputError:
-    return InputError("output", expected="writable", found=error.strerror or str(error),
-                      where=str(target))
+    return InputError(
+        "output", expected="writable", found=error.strerror or str(error), where=str(target)
+    )

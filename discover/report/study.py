@@ -71,8 +71,9 @@ def study_report(
         document_name="study.json",
         document=document,
         verdict=verdict,
-        figures={name: Markup(figures.get(name, "")) for name in
-                 ("map", "probabilities", "errors")},
+        figures={
+            name: Markup(figures.get(name, "")) for name in ("map", "probabilities", "errors")
+        },
         map_caption=_map_caption(document, data),
         boundaries=boundaries,
         loops=pictures,

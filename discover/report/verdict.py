@@ -35,6 +35,9 @@ def verdict_lines(document: Mapping[str, Any]) -> tuple[str, str, str, str, str]
     )
 
 
+_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
+
+
 def structure_line(document: Mapping[str, Any]) -> str:
     """Say which structure holds where."""
     bands, coordinate = document["bands"], str(document["coordinate"])
@@ -44,7 +47,8 @@ def structure_line(document: Mapping[str, Any]) -> str:
         found = f"one band, {_structure(bands[0])}"
         return f"Structure: {found} in all of {counted(len(bands[0]['records']), 'record')}."
     parts = [f"{_structure(b)} {band_range(b, coordinate)}" for b in bands]
-    return f"Structure: {len(bands)} bands of {coordinate_name(document)}: {listed(parts)}."
+    number = _NUMBERS.get(len(bands), str(len(bands)))
+    return f"Structure: {number} bands of {coordinate_name(document)}: {listed(parts)}."
 
 
 def _structure(band: Mapping[str, Any]) -> str:
@@ -62,8 +66,8 @@ def accuracy_line(document: Mapping[str, Any]) -> str:
     floors = [b["noise_percent"] for b in document["bands"] if b.get("noise_percent") is not None]
     if floors:
         least, most = min(floors), max(floors)
-        spread = percent(most) if most - least < 0.1 * most else (
-            f"{percent(least)} to {percent(most)}"
+        spread = (
+            percent(most) if most - least < 0.1 * most else (f"{percent(least)} to {percent(most)}")
         )
         text += f" (noise floor {spread})"
     held_out = document.get("held_out_relative_error_percent")
@@ -111,7 +115,9 @@ def dean_line(document: Mapping[str, Any]) -> str:
         spread = interval(check.get("interval"))
         if spread:
             text += f" ({spread})"
-        text += f", {check['convention']} convention, criterion {significant(check['criterion'], 3)}"
+        text += (
+            f", {check['convention']} convention, criterion {significant(check['criterion'], 3)}"
+        )
     return text + "."
 
 

@@ -110,8 +110,13 @@ def sample_document():
                 "family": "fractional",
                 "structure": "FOIM",
                 "terms": [
-                    term("fractional-derivative", 1520.0, "N*s^1.48/m", order=1.48,
-                         order_interval=[1.42, 1.55]),
+                    term(
+                        "fractional-derivative",
+                        1520.0,
+                        "N*s^1.48/m",
+                        order=1.48,
+                        order_interval=[1.42, 1.55],
+                    ),
                     term("coulomb-friction", 402.0, "N"),
                 ],
                 "error_percent": 1.3,

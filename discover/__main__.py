@@ -1,0 +1,8 @@
+"""``python -m discover``: the same as ``inerter``."""
+
+import sys
+
+from discover.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

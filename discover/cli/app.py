@@ -1,0 +1,102 @@
+"""The command's entry: which verbs there are, and how each ending becomes an exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+import warnings
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+from discover._version import __version__
+from discover.cli.discover import discover
+from discover.cli.invocation import Invocation
+from models.checks import InputError
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+INTERNAL_ERROR = 70
+
+app = typer.Typer(
+    name="inerter",
+    help="Finds which model structure measured fluid-inerter records support, and where.",
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for verb in (discover,):
+    app.command()(verb)
+
+
+def _print_version(value: bool) -> None:  # noqa: FBT001 - typer passes a flag's value by position
+    if value:
+        typer.echo(f"inerter {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    """Name what every verb shares; typer shows the application's help instead."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command and return its exit code.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What follows ``inerter``; by default what the process was started with.
+
+    Returns
+    -------
+    int
+        0 done, 1 a failed check, 2 bad input, 130 interrupted, 70 a fault in this program.
+    """
+    given = tuple(sys.argv[1:] if arguments is None else arguments) or ("--help",)
+    if not sys.warnoptions:  # what a user should know is a finding in the document
+        warnings.simplefilter("ignore")
+    try:
+        result = typer.main.get_command(app).main(
+            args=list(given), prog_name="inerter", standalone_mode=False, obj=Invocation(given)
+        )
+        sys.stdout.flush()
+    except InputError as error:
+        return _complain(str(error), BAD_INPUT)
+    except (KeyboardInterrupt, typer.Abort):
+        return _complain("interrupted", INTERRUPTED)
+    except BrokenPipeError:
+        # The reader has gone; nothing more can be said to it, at exit either.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        name = f"{error.filename}: " if error.filename else ""
+        return _complain(f"{name}{error.strerror or error}", BAD_INPUT)
+    except Exception as error:
+        usage = getattr(error, "format_message", None)
+        if usage is not None:  # typer's own complaints about options
+            return _complain(str(usage()), BAD_INPUT)
+        if os.environ.get("INERTER_DEBUG"):
+            traceback.print_exc()
+        return _complain(
+            f"a fault in this program: {type(error).__name__}: {error};"
+            " INERTER_DEBUG=1 shows where",
+            INTERNAL_ERROR,
+        )
+    return int(result or 0)
+
+
+def _complain(text: str, code: int) -> int:
+    """Print one line on stderr and return `code`."""
+    print("inerter: " + " ".join(text.split()), file=sys.stderr)
+    return code

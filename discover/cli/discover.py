@@ -1,0 +1,89 @@
+"""``inerter discover``: bands, a structure per band, the boundary, the Dean check, a report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from discover.cli import options
+from discover.cli.invocation import Invocation
+from discover.cli.results import deliver, result_folder, working
+from discover.cli.shipped import shipped_campaign
+from models.checks import one_of
+
+
+def discover(
+    context: typer.Context,
+    campaign: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[CAMPAIGN]",
+            help="Folder with campaign.toml and its records [default: the shipped one].",
+            show_default=False,
+        ),
+    ] = None,
+    terms: options.Terms = None,
+    orders: options.Orders = None,
+    exponents: options.Exponents = None,
+    bands: options.Bands = None,
+    coordinate: options.Coordinate = None,
+    convention: options.Convention = "paper",
+    criterion: options.Criterion = 100.0,
+    out: options.Out = None,
+    as_json: options.AsJson = False,
+    seed: options.Seed = options.DEFAULT_SEED,
+    jobs: options.Jobs = 1,
+) -> int:
+    """Find which structure the records support, in which band, and how surely."""
+    one_of("convention", convention, ("paper", "standard"), where="--convention")
+    if coordinate is not None:
+        one_of("coordinate", coordinate, ("dean", "speed", "frequency"), where="--coordinate")
+    chosen = {
+        "terms": options.identifiers(terms, where="--terms"),
+        "orders": options.grid(orders, where="--orders"),
+        "exponents": options.grid(exponents, where="--exponents"),
+    }
+    source = shipped_campaign() if campaign is None else campaign
+    folder = result_folder("discover", source, out)
+
+    # Loaded here: --help and complaints about options need no numerics.
+    from discover.readers import read_campaign
+    from discover.report.study import study_figures, study_report
+    from discover.report.verdict import verdict_lines
+    from discover.study import StudyOptions, run_study
+
+    with working(f"Reading {source}"):
+        measured = read_campaign(source)
+    with working(f"Studying {len(measured.records)} records"):
+        study = run_study(
+            measured,
+            StudyOptions(
+                **chosen,
+                bands=bands,
+                coordinate=coordinate,
+                convention=convention,
+                criterion=criterion,
+                seed=seed,
+                jobs=jobs,
+            ),
+        )
+    with working("Drawing"):
+        document = study.to_dict()
+        figures = study_figures(document, study.figure_data)
+        invocation: Invocation = context.obj
+        page = study_report(
+            document, study.figure_data, figures, command=invocation.repeat(seed=seed)
+        )
+    files = {"report.html": page, "model.json": study.model_json()}
+    files |= {f"figures/{name}.svg": svg for name, svg in figures.items()}
+    deliver(
+        document,
+        name="study.json",
+        folder=folder,
+        files=files,
+        summary=verdict_lines(document),
+        as_json=as_json,
+    )
+    return 0

@@ -1,0 +1,126 @@
+"""Options that several verbs share, and how their text becomes values."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from models.checks import InputError, number
+
+DEFAULT_SEED = 0
+MOST_VALUES = 1000
+
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        "-o",
+        "--out",
+        help="Folder of the results, written whole or not at all"
+        " [default: ./inerter-out/<verb>-<campaign>].",
+        show_default=False,
+    ),
+]
+AsJson = Annotated[
+    bool, typer.Option("--json", help="Print the document on stdout and nothing else there.")
+]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Makes a run repeatable.")]
+Jobs = Annotated[int, typer.Option("--jobs", min=1, help="Number of processes.")]
+Terms = Annotated[
+    str | None,
+    typer.Option("--terms", metavar="ID,ID,…", help="Only these terms, all of them kept."),
+]
+Orders = Annotated[
+    str | None,
+    typer.Option(
+        "--orders",
+        metavar="GRID",
+        help="Orders to start from, as 0:2:0.1 or 0.5,1.5; they are refined continuously.",
+    ),
+]
+Exponents = Annotated[
+    str | None,
+    typer.Option("--exponents", metavar="GRID", help="Velocity exponents, likewise."),
+]
+Bands = Annotated[
+    int | None, typer.Option("--bands", min=1, help="Fix the number of bands.", show_default=False)
+]
+Coordinate = Annotated[
+    str | None,
+    typer.Option(
+        "--coordinate",
+        metavar="dean|speed|frequency",
+        help="What bands lie on [default: dean where the device is known, else speed].",
+    ),
+]
+Convention = Annotated[
+    str, typer.Option("--convention", metavar="paper|standard", help="Of the Dean number.")
+]
+Criterion = Annotated[
+    float, typer.Option("--criterion", help="Dean number that the check holds the boundary to.")
+]
+
+
+def grid(text: str | None, *, where: str) -> tuple[float, ...] | None:
+    """Return the values of ``start:stop:step`` (both ends in) or ``a,b,c``; None for none.
+
+    Raises
+    ------
+    InputError
+        For text that is neither.
+
+    Examples
+    --------
+    >>> grid("0:0.4:0.1", where="--orders")
+    (0.0, 0.1, 0.2, 0.3, 0.4)
+    >>> grid("0.5,1.5", where="--orders")
+    (0.5, 1.5)
+    """
+    if text is None:
+        return None
+    if ":" not in text:
+        return tuple(number("value", part.strip(), where=where) for part in text.split(","))
+    parts = text.split(":")
+    if len(parts) != 3:
+        raise InputError("grid", expected="start:stop:step or a,b,c", found=text, where=where)
+    start, stop, step = (
+        number(name, part.strip(), where=where)
+        for name, part in zip(("start", "stop", "step"), parts, strict=True)
+    )
+    if step <= 0.0 or stop < start:
+        raise InputError("grid", expected="rising, with a step above 0", found=text, where=where)
+    if (stop - start) / step > MOST_VALUES:
+        raise InputError(
+            "grid", expected=f"of at most {MOST_VALUES} values", found=text, where=where
+        )
+    # Counting instead of adding keeps 0.3 from becoming 0.30000000000000004.
+    count = int(np.floor((stop - start) / step + 1e-9)) + 1
+    return tuple(round(start + i * step, 12) for i in range(count))
+
+
+def identifiers(text: str | None, *, where: str) -> tuple[str, ...] | None:
+    """Return comma-separated ids; None for none.
+
+    Raises
+    ------
+    InputError
+        Where nothing stands between two commas, or an id stands twice.
+
+    Examples
+    --------
+    >>> identifiers("inertia, viscous-damping", where="--terms")
+    ('inertia', 'viscous-damping')
+    """
+    if text is None:
+        return None
+    parts = tuple(part.strip() for part in text.split(","))
+    if not all(parts):
+        raise InputError(
+            "list", expected="ids parted by single commas", found=repr(text), where=where
+        )
+    twice = next((p for p in parts if parts.count(p) > 1), None)
+    if twice is not None:
+        raise InputError("list", expected="each id once", found=f"{twice} twice", where=where)
+    return parts

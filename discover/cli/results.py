@@ -1,0 +1,84 @@
+"""Where results go: a folder written whole, and stdout."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.console import Console
+
+from discover.report.document import json_text
+from discover.report.folder import check_replaceable, write_folder
+
+
+def result_folder(verb: str, campaign: str | Path, out: Path | None) -> Path:
+    """Return the folder that results go to, refused early where it can't be written.
+
+    Raises
+    ------
+    InputError
+        Where it holds something that is not an earlier result.
+    """
+    name = Path(campaign).resolve().name or "campaign"
+    folder = Path("inerter-out", f"{verb}-{name}") if out is None else out
+    check_replaceable(folder)
+    return folder
+
+
+@contextlib.contextmanager
+def working(text: str) -> Iterator[None]:
+    """Show `text` on a terminal's stderr while work runs; keep libraries off stdout."""
+    with contextlib.ExitStack() as stack:
+        if sys.stderr.isatty():
+            stack.enter_context(Console(stderr=True).status(text))
+        stack.enter_context(contextlib.redirect_stdout(io.StringIO()))
+        yield
+
+
+def deliver(
+    document: Mapping[str, Any],
+    *,
+    name: str,
+    folder: Path,
+    files: Mapping[str, str],
+    summary: Sequence[str],
+    as_json: bool,
+) -> None:
+    """Write the document and `files` to `folder`, then print the document or the summary.
+
+    Parameters
+    ----------
+    document : mapping
+        The result.
+    name : str
+        Its file name.
+    folder : Path
+        From `result_folder`.
+    files : mapping
+        What else goes there.
+    summary : sequence of str
+        Lines for a person; the folder or the report is named below them.
+    as_json : bool
+        Print the document instead, and nothing else.
+    """
+    text = json_text(document)
+    written = write_folder(folder, {name: text, **files})
+    if as_json:
+        typer.echo(text, nl=False)
+        return
+    for line in summary:
+        typer.echo(line)
+    last = written / ("report.html" if "report.html" in files else name)
+    typer.echo(f"{'Report' if last.name == 'report.html' else 'Document'}: {_shown(last)}")
+
+
+def _shown(path: Path) -> str:
+    """Return `path` as seen from here where it lies below, else in full."""
+    here = Path(os.getcwd())
+    return str(path.relative_to(here)) if path.is_relative_to(here) else str(path)

@@ -1,0 +1,107 @@
+import dataclasses
+import re
+import xml.etree.ElementTree as ElementTree
+
+import matplotlib
+import pytest
+
+from discover.plots.errors import error_by_record
+from discover.plots.loops import loops, representative
+from discover.plots.probabilities import probability_bars
+from discover.plots.record_map import record_map, relative_interval
+from discover.plots.style import STRUCTURE_COLOURS, house_style
+from tests.discover.sample_study import AMPLITUDES, FREQUENCIES, sample_data, sample_document
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def words(svg):
+    return [t.text for t in ElementTree.fromstring(svg).iter(f"{SVG}text")]
+
+
+def marks(svg, colour):
+    """Return the number of markers filled or edged with `colour`, legend included."""
+    return len(re.findall(rf"<use [^>]*(?:fill|stroke): {colour}", svg))
+
+
+def test_map_shows_every_test_once_with_axes_in_units():
+    data = sample_data()
+    svg = record_map(sample_document(), data)
+    labels = words(svg)
+    assert {"Frequency (Hz)", "Displacement amplitude (mm)", "De 100"} <= set(labels)
+    fitted = [r for r in data.records if not r.held_out]
+    drawn = sum(marks(svg, STRUCTURE_COLOURS[s]) for s in {r.structure for r in data.records})
+    legend = len({(r.structure, r.held_out) for r in data.records})
+    assert drawn == len(data.records) + legend
+    assert len(fitted) < len(data.records) < len(FREQUENCIES) * len(AMPLITUDES)
+
+
+def test_map_names_the_convention_of_its_dean_lines():
+    document = sample_document()
+    document["dean_check"]["convention"] = "standard"
+    assert "Dean number (standard convention)" in words(record_map(document, sample_data()))
+
+
+def test_map_without_device_or_sine_tests():
+    data = dataclasses.replace(sample_data(), dean_per_speed_paper=None)
+    assert not [w for w in words(record_map(sample_document(), data)) if w.startswith("De ")]
+    other = tuple(dataclasses.replace(r, frequency=None, amplitude=None) for r in data.records)
+    assert record_map(sample_document(), dataclasses.replace(data, records=other)) is None
+
+
+def test_map_of_one_test_has_axes_of_finite_width():
+    data = dataclasses.replace(sample_data(), records=sample_data().records[:1])
+    assert "Frequency (Hz)" in words(record_map(sample_document(), data))
+
+
+@pytest.mark.parametrize("coordinate", ["speed", "frequency"])
+def test_interval_in_the_coordinate_else_the_bracket(coordinate):
+    key = {"speed": "speed", "frequency": "frequency_hz"}[coordinate]
+    boundary = {key: 2.0, "bracket": [1.0, 4.0]}
+    assert relative_interval(boundary, coordinate) == (0.5, 2.0)
+    assert relative_interval(boundary | {f"{coordinate}_interval": [1.5, 3.0]}, coordinate) == (
+        0.75,
+        1.5,
+    )
+    assert relative_interval({key: 2.0}, coordinate) is None
+
+
+def test_loops_show_both_curves_in_prefixed_units():
+    fast = max(sample_data().records, key=lambda r: abs(r.force).max())
+    labels = words(loops(fast, name="fast"))
+    assert {"Time (s)", "Force (kN)", "Velocity (m/s)", "measured", "model"} <= set(labels)
+
+
+def test_file_names_are_shown_as_they_are_not_as_formulas():
+    record = dataclasses.replace(sample_data().records[0], file="a_$x$<1>.csv", frequency=None)
+    data = dataclasses.replace(sample_data(), records=(record,))
+    assert "a_$x$<1>.csv" in words(error_by_record(data))
+
+
+def test_a_few_records_cover_bands_and_a_held_out_one():
+    data = sample_data()
+    chosen = representative(data.records)
+    assert len(chosen) == 4
+    assert {r.band for r in chosen} == {0, 1}
+    assert any(r.held_out for r in chosen)
+    assert representative(()) == []
+
+
+def test_probabilities_fall_back_on_the_document():
+    data = dataclasses.replace(sample_data(), probabilities=())
+    assert {"Band 1", "Band 2", "81 %", "17 %"} <= set(
+        words(probability_bars(sample_document(), data))
+    )
+    document = sample_document()
+    for band in document["bands"]:
+        band |= {"probability": None, "equivalents": []}
+    assert probability_bars(document, data) is None
+
+
+def test_drawing_twice_gives_the_same_bytes_and_leaves_the_settings_alone():
+    before = dict(matplotlib.rcParams)
+    first, second = (record_map(sample_document(), sample_data()) for _ in range(2))
+    assert first == second
+    assert dict(matplotlib.rcParams) == before
+    with house_style():
+        assert matplotlib.rcParams["text.parse_math"] is False

@@ -1,0 +1,145 @@
+import copy
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+from discover.figure_data import StudyFigureData
+from discover.report.study import study_figures, study_report
+from discover.report.verdict import dean_line, verdict_lines
+from tests.discover.sample_study import sample_data, sample_document
+
+VOID = {"meta", "br", "path", "use", "rect"}
+
+
+class Page(HTMLParser):
+    """Collects text, ids and addresses; fails on tags that do not close."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.open, self.ids, self.addresses, self.words, self.tags = [], [], [], [], []
+        self.feed(html)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        values = dict(attrs)
+        if "id" in values:
+            self.ids.append(values["id"])
+        self.addresses += [values[k] for k in ("src", "href", "xlink:href") if k in values]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.handle_starttag(tag, attrs)
+        if tag not in VOID:
+            self.open.pop()
+
+    def handle_endtag(self, tag):
+        if tag not in VOID:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+    @property
+    def text(self):
+        return " ".join(" ".join(self.words).split())
+
+
+def report(document=None, data=None, command="inerter discover rig --seed 0"):
+    document = document or sample_document()
+    data = data or sample_data()
+    return study_report(document, data, study_figures(document, data), command=command)
+
+
+@pytest.fixture(scope="module")
+def page():
+    return Page(report())
+
+
+def test_page_is_well_formed_and_ids_are_unique(page):
+    assert page.open == []
+    assert len(page.ids) == len(set(page.ids)) > 50
+
+
+def test_page_loads_nothing_from_anywhere(page):
+    assert page.addresses
+    assert all(a.startswith("#") for a in page.addresses)
+    assert not {"script", "link", "img", "iframe"} & set(page.tags)
+
+
+def test_every_reference_inside_a_picture_has_its_target(page):
+    html = report()
+    targets = set(re.findall(r'(?:href="|url\()#([^")]+)', html))
+    assert targets <= set(page.ids)
+
+
+def test_verdict_stands_before_everything_else(page):
+    text = page.text
+    assert text.index("FOIM of order 1.48 below 98") < text.index("Where each structure holds")
+
+
+def test_page_carries_each_part(page):
+    for part in (
+        "Coefficients",
+        "Measured beside model",
+        "Dean check",
+        "What other methods say",
+        "STLSQ",
+        "What to know",
+        "What to do next",
+        "inerter discover rig --seed 0",
+        "98 (paper convention), 34.6 (standard convention)",
+    ):
+        assert part in page.text
+
+
+def test_text_of_a_campaign_is_escaped_in_page_and_pictures():
+    document, data = sample_document(), sample_data()
+    document["campaign"]["title"] = "<script>alert(1)</script> & $x^2$"
+    page = Page(report(document, data, command="inerter discover '<b>'"))
+    assert "script" not in page.tags
+    assert "b" not in page.tags
+    assert "<script>alert(1)</script> & $x^2$" in page.text
+
+
+def test_a_study_without_device_plan_or_probabilities_still_reports():
+    document = sample_document()
+    document["coordinate"] = "speed"
+    document["bands"] = [copy.deepcopy(document["bands"][1])]
+    document["bands"][0] |= {
+        "lower": None,
+        "upper": None,
+        "lower_hz": None,
+        "upper_hz": None,
+        "probability": None,
+        "noise_percent": None,
+    }
+    document |= {"boundaries": [], "nuisance": [], "findings": [], "next_test": None}
+    document["dean_check"] = {"convention": "paper", "criterion": 100.0, "verdict": "no-geometry"}
+    page = Page(report(document, StudyFigureData(records=())))
+    assert "no device geometry" in page.text
+    assert "no plan of frequencies and amplitudes to map" in page.text
+    assert "Measured beside model" not in page.text
+
+
+def test_verdict_is_five_lines_and_names_the_convention():
+    lines = verdict_lines(sample_document())
+    assert [line.split(":")[0] for line in lines] == [
+        "Structure",
+        "Accuracy",
+        "Certainty",
+        "Dean check",
+        "Next test",
+    ]
+    assert "paper convention" in lines[0]
+    assert "98 (84 to 117), paper convention, criterion 100" in lines[3]
+    assert "IOIM-linear (17\u202f%) not ruled out" in lines[2]
+
+
+@pytest.mark.parametrize("verdict", ["consistent", "contradicted", "undetermined", "no-boundary"])
+def test_dean_line_leads_with_the_verdict(verdict):
+    document = sample_document()
+    document["dean_check"]["verdict"] = verdict
+    assert dean_line(document).startswith(f"Dean check: {verdict}: ")
