@@ -5,17 +5,26 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
 from models.fractional.orders import Array
+from models.fractional.threads import map_threads
 
 Complex = NDArray[np.complex128]
 WeightMaker = Callable[[Array, int], Array]
 
+Item = TypeVar("Item")
+
 DEFAULT_CACHE_BYTES = 256 * 2**20
+# Rows transformed together: as many as scipy's vector registers hold; more would only spill.
+_ROWS = 2
+# Weights made together, and their bytes at most.
+_MADE_ROWS = 32
+_MADE_BYTES = 2**25
 
 
 class SpectrumCache:
@@ -119,25 +128,34 @@ def weight_spectra(
     keys = [(scheme, float(order), samples) for order in orders]
     rows = [_CACHE.get(key) for key in keys]
     missing = [i for i, row in enumerate(rows) if row is None]
-    block = _block_rows()
-    for start in range(0, len(missing), block):
-        chosen = missing[start : start + block]
-        made = scipy.fft.rfft(make_weights(orders[chosen], samples), n=length, axis=-1)
+
+    def make(chosen: list[int]) -> Complex:
+        made: Complex = scipy.fft.rfft(
+            make_weights(orders[chosen], samples), n=length, axis=-1, workers=1
+        )
+        made.setflags(write=False)
+        return made
+
+    together = max(2, min(_MADE_ROWS, _MADE_BYTES // (8 * samples)))
+    blocks = _blocks(missing, together)
+    for chosen, made in zip(blocks, map_threads(make, blocks), strict=True):
         for i, row in zip(chosen, made, strict=True):
-            kept = np.ascontiguousarray(row) if len(chosen) == 1 else row.copy()
-            kept.setflags(write=False)
-            rows[i] = kept
-            _CACHE.put(keys[i], kept)
+            rows[i] = row
+            _CACHE.put(keys[i], row)
     return [row for row in rows if row is not None]
 
 
-def convolve(x: Array, spectra: Sequence[Complex], scales: Array) -> Array:
-    """Convolve each record causally with the weights of each order.
+def convolve(
+    sources: Array, choice: NDArray[np.intp], spectra: Sequence[Complex], scales: Array
+) -> Array:
+    """Convolve records causally with the weights of each order.
 
     Parameters
     ----------
-    x : ndarray, shape (R, N)
-        Records.
+    sources : ndarray, shape (V, R, N)
+        Variants of R records.
+    choice : ndarray of int, shape (K,)
+        The variant that each order works on.
     spectra : sequence of K ndarrays, shape (L // 2 + 1,)
         From `weight_spectra` for N samples.
     scales : ndarray, shape (K,)
@@ -146,32 +164,32 @@ def convolve(x: Array, spectra: Sequence[Complex], scales: Array) -> Array:
     Returns
     -------
     ndarray, shape (K, R, N)
-        Uses as many threads as `scipy.fft.get_workers` says.
 
     Examples
     --------
     >>> rows = weight_spectra("ones", np.array([0.0]), 4, lambda a, n: np.ones((a.size, n)))
-    >>> convolve(np.array([[1.0, 2.0, 3.0, 4.0]]), rows, np.array([1.0])).round(12)
+    >>> x = np.array([[[1.0, 2.0, 3.0, 4.0]]])
+    >>> convolve(x, np.array([0]), rows, np.array([1.0])).round(12)
     array([[[ 1.,  3.,  6., 10.]]])
     """
-    records, samples = x.shape
+    _, records, samples = sources.shape
     length = padded_length(samples)
-    bins = length // 2 + 1
     out = np.empty((len(spectra), records, samples))
-    transformed = scipy.fft.rfft(x, n=length, axis=-1)
-    jobs = [(k, r) for k in range(len(spectra)) for r in range(records)]
-    block = min(_block_rows(), len(jobs))
-    buffer = np.empty((block, bins), dtype=np.complex128)
-    for start in range(0, len(jobs), block):
-        chosen = jobs[start : start + block]
-        for row, (k, r) in zip(buffer, chosen, strict=False):
-            np.multiply(spectra[k], transformed[r], out=row)
-        values = scipy.fft.irfft(buffer[: len(chosen)], n=length, axis=-1)
-        for row, (k, r) in zip(values, chosen, strict=True):
+    transformed = scipy.fft.rfft(sources, n=length, axis=-1)
+
+    def work(block: list[tuple[int, int]]) -> None:
+        product = np.empty((len(block), length // 2 + 1), dtype=np.complex128)
+        for row, (k, r) in zip(product, block, strict=True):
+            np.multiply(spectra[k], transformed[choice[k], r], out=row)
+        values = scipy.fft.irfft(product, n=length, axis=-1, overwrite_x=True, workers=1)
+        for row, (k, r) in zip(values, block, strict=True):
             np.multiply(row[:samples], scales[k], out=out[k, r])
+
+    jobs = [(k, r) for k in range(len(spectra)) for r in range(records)]
+    map_threads(work, _blocks(jobs, _ROWS))
     return out
 
 
-def _block_rows() -> int:
-    """Rows worked on together: enough for every thread, few enough to stay in cache."""
-    return max(2, int(scipy.fft.get_workers()))
+def _blocks(items: Sequence[Item], size: int) -> list[list[Item]]:
+    """Split into blocks of `size`, the last one shorter."""
+    return [list(items[start : start + size]) for start in range(0, len(items), size)]
