@@ -1,0 +1,179 @@
+"""The nonlinear part of a sine fit: its frequency, found and refined."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.fft import next_fast_len, rfft
+
+from discover.sine_fit.design import harmonic_design
+from discover.sine_fit.solution import SineFit, Solution, frequency_column, solve
+from models.checks import Array, InputError, finite_array, number
+
+_SCAN_CYCLES = 12.0  # below this many cycles a spectrum's peak is off by its own mirror image
+
+
+def fit_sine(
+    time: ArrayLike,
+    x: ArrayLike,
+    *,
+    frequency: float | None = None,
+    harmonics: int = 7,
+    where: str = "",
+) -> SineFit:
+    """Fit frequency, mean, trend and significant harmonics by least squares.
+
+    The frequency starts from the spectrum's peak (for few cycles from a scan of exact fits) and
+    is refined by Gauss-Newton steps with all linear coefficients eliminated (variable
+    projection). Whole cycles are not needed. A harmonic is kept where its amplitude exceeds what
+    the noise beside it in the spectrum gives with probability 1e-3.
+
+    Parameters
+    ----------
+    time : array_like, shape (N,)
+        Time, s, strictly increasing; uniform or not.
+    x : array_like, shape (N,)
+        Signal whose fundamental is its strongest line.
+    frequency : float, optional
+        Hz; held exactly where given, found where not.
+    harmonics : int, optional
+        The highest harmonic tried, lowered where the sampling does not resolve it.
+    where : str, optional
+        Name of the record for messages.
+
+    Returns
+    -------
+    SineFit
+
+    Raises
+    ------
+    InputError
+        On fewer than 8 samples, values that are not finite, or a signal that does not vary.
+
+    Notes
+    -----
+    Golub and Pereyra, Inverse Problems 19 (2003) R1. For white noise the standard error of the
+    frequency tends to the Cramer-Rao bound ``sqrt(6 / N) s / (pi A T)`` (Rife and Boorstyn, IEEE
+    Trans. Inf. Theory 20 (1974) 591).
+
+    Examples
+    --------
+    >>> t = np.arange(460) / 200.0
+    >>> fit = fit_sine(t, 0.02 * np.sin(2 * np.pi * 1.3 * t) + 0.001)
+    >>> round(fit.frequency, 9), round(fit.amplitude, 9), round(float(fit.coefficients[0].real), 9)
+    (1.3, 0.02, 0.001)
+    """
+    t = finite_array("time", time, ndim=1, min_size=8, where=where)
+    y = finite_array("x", x, ndim=1, min_size=8, where=where)
+    if t.shape != y.shape:
+        raise InputError("x", expected=f"of shape {t.shape}", found=f"{y.shape}", where=where)
+    middle = float(t.mean())
+    tau = t - middle
+    duration = float(t[-1] - t[0])
+    if not duration > 0.0 or np.any(np.diff(t) <= 0.0):
+        raise InputError("time", expected="strictly increasing", found="a step <= 0", where=where)
+    offset = float(y.mean())
+    scale = float(np.abs(y - offset).max())
+    if scale <= 1e-14 * abs(offset) or scale == 0.0:
+        raise InputError("x", expected="varying", found="a constant", where=where)
+    z = (y - offset) / scale
+    found = frequency is None
+    if frequency is None:
+        f = _start(tau, z, duration)
+        f = _refine(tau, z, f, _allowed(min(harmonics, 3), f, t.size, duration), settled=1e-3)
+    else:
+        f = number("frequency", frequency, above=0.0, where=where)
+    orders = _allowed(harmonics, f, t.size, duration)
+    if found:
+        f = _refine(tau, z, f, orders)
+    solution = Solution(tau, z, f, orders, with_frequency=found)
+    kept, keep_trend = solution.significant()
+    if (kept, keep_trend) != (orders, True):
+        if found:
+            f = _refine(tau, z, f, kept, trend=keep_trend)
+        solution = Solution(tau, z, f, kept, trend=keep_trend, with_frequency=found)
+    return solution.result(middle, offset, scale)
+
+
+def _allowed(harmonics: int, frequency: float, size: int, duration: float) -> tuple[int, ...]:
+    """Return the harmonics that the mean sampling and the number of samples resolve."""
+    nyquist = 0.5 * (size - 1) / duration
+    highest = min(harmonics, int(0.9 * nyquist / frequency), (size - 4) // 4)
+    return tuple(range(1, max(highest, 1) + 1))
+
+
+def _start(tau: Array, z: Array, duration: float) -> float:
+    """Return the frequency of the strongest line, good to a fraction of 1/duration."""
+    size = z.size
+    grid = np.linspace(tau[0], tau[-1], size)
+    even = (
+        z
+        if np.allclose(grid, tau, rtol=0.0, atol=1e-3 * duration / size)
+        else np.interp(grid, tau, z)
+    )
+    slope = (grid @ even) / (grid @ grid)
+    padded = next_fast_len(4 * size, real=True)
+    spectrum = np.abs(rfft((even - even.mean() - slope * grid) * np.hanning(size), padded))
+    bin_width = (size - 1) / duration / padded
+    lowest = max(1, int(0.5 / duration / bin_width))
+    peak = lowest + int(np.argmax(spectrum[lowest:]))
+    shift = 0.0
+    if 0 < peak < spectrum.size - 1 and spectrum[peak - 1 : peak + 2].min() > 0.0:
+        a, b, c = np.log(spectrum[peak - 1 : peak + 2])
+        curvature = a - 2.0 * b + c
+        shift = 0.5 * (a - c) / curvature if curvature < 0.0 else 0.0
+    start = (peak + shift) * bin_width
+    if start * duration >= _SCAN_CYCLES:
+        return float(start)
+    return _scan(tau, z, start, duration)
+
+
+def _scan(tau: Array, z: Array, start: float, duration: float) -> float:
+    """Return the best of exact fits at frequencies within 1.5/duration of the start."""
+    stride = max(1, z.size // 800)
+    t, y = tau[::stride], z[::stride]
+    lowest = 0.4 / duration
+    best, best_cost = start, np.inf
+    for f in np.linspace(max(lowest, start - 1.5 / duration), start + 1.5 / duration, 61):
+        design = harmonic_design(t, float(f), _allowed(2, float(f), t.size, duration), trend=True)
+        residual = y - design @ np.linalg.lstsq(design, y, rcond=None)[0]
+        cost = float(residual @ residual)
+        if cost < best_cost:
+            best, best_cost = float(f), cost
+    return best
+
+
+def _refine(
+    tau: Array,
+    z: Array,
+    frequency: float,
+    orders: Sequence[int],
+    *,
+    trend: bool = True,
+    settled: float = 1e-10,
+) -> float:
+    """Return the frequency at the least-squares minimum, to `settled` rad over the record."""
+    duration = float(tau[-1] - tau[0])
+    lowest = 0.3 / duration
+    omega, last_cost, step = 2.0 * np.pi * frequency, np.inf, 0.0
+    for _ in range(25):
+        design = harmonic_design(tau, omega / (2.0 * np.pi), orders, trend=trend)
+        beta, _ = solve(design, z)
+        residual = z - design @ beta
+        cost = float(residual @ residual)
+        if cost > last_cost * (1.0 + 1e-12) and abs(step) * duration > 1e-9:
+            step *= 0.5
+            omega -= step
+            continue
+        last_cost = cost
+        column = frequency_column(tau, design, beta, orders)
+        full = np.column_stack([design, column])
+        step = float(solve(full, residual)[0][-1])
+        step = float(np.clip(step, -1.5 / duration, 1.5 / duration))
+        step = max(step, 2.0 * np.pi * lowest - omega)
+        omega += step
+        if abs(step) * duration < settled:
+            break
+    return float(omega / (2.0 * np.pi))

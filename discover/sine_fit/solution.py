@@ -1,0 +1,197 @@
+"""The linear part of a sine fit: solution at one frequency, its noise, what is significant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from discover.sine_fit.design import ComplexArray, harmonic_design
+from models.checks import Array
+
+_NEGLIGIBLE = 1e-12  # of the fundamental: rounding, not a harmonic
+
+
+@dataclass(frozen=True)
+class SineFit:
+    """A sine test's fit: ``x(t) = trend (t - mean(t)) + Re sum_k c_k exp(i k w t)``."""
+
+    frequency: float
+    """Hz, of the fundamental."""
+    frequency_std_error: float
+    """Hz, from the noise near the fundamental; 0 where the frequency was given."""
+    coefficients: ComplexArray
+    """(H + 1,) in x's unit: c_0 (real) is the mean, c_k the k-th harmonic's phasor at t = 0."""
+    std_errors: Array
+    """(H + 1,) of each coefficient's real or imaginary part, from the noise near it."""
+    trend: float
+    """x's unit per s, about the mid of the record; 0 where not significant."""
+    noise_rms: float
+    """Root mean square of the residual over its degrees of freedom."""
+    white_level: float
+    """Standard deviation of white noise with the residual's median spectral density."""
+    residual: Array
+    """(N,) what trend and harmonics leave of x."""
+    quality: float
+    """Share of x's variance (mean and trend removed) that the harmonics explain, at most 1."""
+    cycles: float
+    """Duration times frequency; whole or not."""
+
+    @property
+    def amplitude(self) -> float:
+        """Return the fundamental's amplitude, in x's unit."""
+        return float(abs(self.coefficients[1]))
+
+    @property
+    def phase(self) -> float:
+        """Return the fundamental's phase at t = 0, rad: ``A cos(w t + phase)``."""
+        return float(np.angle(self.coefficients[1]))
+
+    @property
+    def distortion(self) -> float:
+        """Return the harmonics' root sum square above the first, over the amplitude."""
+        return float(np.linalg.norm(self.coefficients[2:]) / self.amplitude)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fit without its residual, complex numbers as [real, imaginary]."""
+        return {
+            "frequency_hz": self.frequency,
+            "frequency_std_error_hz": self.frequency_std_error,
+            "coefficients": [[float(c.real), float(c.imag)] for c in self.coefficients],
+            "trend": self.trend,
+            "noise_rms": self.noise_rms,
+            "white_level": self.white_level,
+            "quality": self.quality,
+            "cycles": self.cycles,
+        }
+
+
+def solve(design: Array, y: Array) -> tuple[Array, Array]:
+    """Return the least-squares solution and the inverse of the normal matrix."""
+    norms = np.sqrt(np.einsum("ij,ij->j", design, design))
+    gram = (design.T @ design) / np.outer(norms, norms)
+    values = np.linalg.eigvalsh(gram)
+    if values[0] > 1e-6 * values[-1]:  # nearly orthogonal: squaring the condition costs nothing
+        factor = cho_factor(gram)
+        beta = cho_solve(factor, (design.T @ y) / norms) / norms
+        beta = beta + cho_solve(factor, (design.T @ (y - design @ beta)) / norms) / norms
+        inverse = cho_solve(factor, np.eye(norms.size))
+    else:
+        u, s, vt = np.linalg.svd(design / norms, full_matrices=False)
+        s = np.maximum(s, 1e-13 * s[0])
+        beta = vt.T @ ((u.T @ y) / s) / norms
+        inverse = (vt.T / s**2) @ vt
+    return beta, inverse / np.outer(norms, norms)
+
+
+def frequency_column(tau: Array, design: Array, beta: Array, orders: Sequence[int]) -> Array:
+    """Return the derivative of the fit by angular frequency."""
+    column = np.zeros(tau.size)
+    for i, k in enumerate(orders):
+        cosine, minus_sine = design[:, 1 + 2 * i], design[:, 2 + 2 * i]
+        column += k * (beta[1 + 2 * i] * minus_sine - beta[2 + 2 * i] * cosine)
+    return np.asarray(column * tau)
+
+
+class Solution:
+    """A linear fit at one frequency, with what its residual says about its coefficients."""
+
+    def __init__(
+        self,
+        tau: Array,
+        z: Array,
+        frequency: float,
+        orders: tuple[int, ...],
+        *,
+        trend: bool = True,
+        with_frequency: bool,
+    ) -> None:
+        self.tau, self.z, self.frequency, self.orders, self.trend = tau, z, frequency, orders, trend
+        design = harmonic_design(tau, frequency, orders, trend=trend)
+        self.beta, inverse = solve(design, z)
+        self.residual = z - design @ self.beta
+        self.with_frequency = with_frequency
+        if with_frequency:
+            column = frequency_column(tau, design, self.beta, orders)
+            inverse = solve(np.column_stack([design, column]), z)[1]
+        self.variance = np.diag(inverse)
+        self.size = self.beta.size + int(with_frequency)
+        self._measure_noise()
+
+    def _measure_noise(self) -> None:
+        """Set the noise density (as a white variance) at each harmonic and overall."""
+        n = self.z.size
+        freedom = max(n - self.size, 1)
+        self.total = float(self.residual @ self.residual) / freedom
+        duration = float(self.tau[-1] - self.tau[0])
+        window = np.hanning(n)
+        density = np.abs(np.fft.rfft(self.residual * window)) ** 2 / float(window @ window)
+        bins = np.arange(density.size) * (n - 1) / n  # in units of 1/duration
+        cycles = self.frequency * duration
+        nearest = np.clip(np.round(bins / cycles), 0, max(self.orders))
+        free = (np.abs(bins - nearest * cycles) > 2.0) & (bins < 0.5 * n - 1.0)
+        if int(free.sum()) < 8:
+            self.white = self.total
+            self.local = {k: self.total for k in (0, *self.orders)}
+            return
+        positions, levels = bins[free], density[free]
+        self.white = float(np.median(levels) / np.log(2.0))
+        self.local = {}
+        for k in (0, *self.orders):
+            near = np.argsort(np.abs(positions - k * cycles), kind="stable")[:24]
+            self.local[k] = float(np.median(levels[near]) / np.log(2.0))
+
+    def significant(self) -> tuple[tuple[int, ...], bool]:
+        """Return the harmonics that stand out of the noise, and whether the trend does."""
+        kept = [1]
+        largest = float(np.hypot(*self.beta[1:3]))
+        for i, k in enumerate(self.orders[1:], start=1):
+            pair = self.beta[1 + 2 * i : 3 + 2 * i]
+            variance = 0.5 * float(self.variance[1 + 2 * i : 3 + 2 * i].sum()) * self.local[k]
+            size = float(pair @ pair)
+            if size > 2.0 * np.log(1e3) * variance and size > (_NEGLIGIBLE * largest) ** 2:
+                kept.append(k)
+        index = 1 + 2 * len(self.orders)
+        slope = float(self.beta[index])
+        error = np.sqrt(float(self.variance[index]) * self.local[0])
+        reach = abs(slope) * float(self.tau[-1] - self.tau[0])
+        return tuple(kept), bool(abs(slope) > 4.0 * error and reach > _NEGLIGIBLE * largest)
+
+    def result(self, middle: float, offset: float, scale: float) -> SineFit:
+        """Return the fit in the record's own time and unit."""
+        highest = max(self.orders)
+        coefficients = np.zeros(highest + 1, dtype=np.complex128)
+        errors = np.zeros(highest + 1)
+        coefficients[0] = self.beta[0] * scale + offset
+        errors[0] = np.sqrt(self.variance[0] * self.local[0])
+        for i, k in enumerate(self.orders):
+            turn = np.exp(-2j * np.pi * k * self.frequency * middle)
+            phasor = complex(self.beta[1 + 2 * i], self.beta[2 + 2 * i])
+            coefficients[k] = phasor * turn * scale
+            errors[k] = np.sqrt(0.5 * self.variance[1 + 2 * i : 3 + 2 * i].sum() * self.local[k])
+        slope = float(self.beta[-1]) if self.trend else 0.0
+        plain = self.z - self.beta[0] - slope * self.tau
+        variance = float(plain @ plain)
+        quality = 1.0 - float(self.residual @ self.residual) / variance if variance else 0.0
+        error = 0.0
+        if self.with_frequency:
+            error = float(np.sqrt(self.variance[-1] * self.local[1])) / (2.0 * np.pi)
+        errors *= scale
+        residual = self.residual * scale
+        for array in (coefficients, errors, residual):
+            array.flags.writeable = False
+        return SineFit(
+            frequency=self.frequency,
+            frequency_std_error=error,
+            coefficients=coefficients,
+            std_errors=errors,
+            trend=slope * scale,
+            noise_rms=float(np.sqrt(self.total)) * scale,
+            white_level=float(np.sqrt(self.white)) * scale,
+            residual=residual,
+            quality=quality,
+            cycles=self.frequency * float(self.tau[-1] - self.tau[0]),
+        )
