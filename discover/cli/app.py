@@ -14,6 +14,7 @@ import typer
 from discover._version import __version__
 from discover.cli.discover import discover
 from discover.cli.invocation import Invocation
+from discover.cli.synth import synth
 from models.checks import InputError
 
 BAD_INPUT = 2
@@ -28,11 +29,11 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for verb in (discover,):
+for verb in (discover, synth):
     app.command()(verb)
 
 
-def _print_version(value: bool) -> None:  # noqa: FBT001 - typer passes a flag's value by position
+def _print_version(value: bool) -> None:
     if value:
         typer.echo(f"inerter {__version__}")
         raise typer.Exit

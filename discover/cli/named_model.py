@@ -1,0 +1,92 @@
+"""Models by name: a ``model.json``, or one of the paper's forms with its values for a device."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from models.checks import InputError
+from models.constitutive import (
+    Band,
+    ForceModel,
+    SegmentedModel,
+    foim,
+    ioim_laminar,
+    ioim_turbulent,
+    sfoim,
+)
+from models.device import Device
+
+NAMES = ("ioim-laminar", "ioim-turbulent", "foim", "sfoim")
+
+# (b0, order) as the paper identified them: M1 (0.5 Hz), M2 (12 Hz) and M3 (3 Hz).
+_ABOVE = {"device-12": (0.57, 1.89), "device-10": (0.087, 1.98)}
+_BELOW = {"device-12": (18.25, 0.48)}
+
+
+def named_model(name: str, device: Device | None, *, where: str = "--model") -> SegmentedModel:
+    """Return a model from its name or file.
+
+    Parameters
+    ----------
+    name : str
+        ``ioim-laminar``, ``ioim-turbulent`` (coefficients from the device's geometry), ``foim``,
+        ``sfoim`` (the paper's b0 and order, for its two devices), or the path of a ``model.json``.
+    device : Device or None
+        Needed by the names.
+    where : str
+        What an error names as the place.
+
+    Raises
+    ------
+    InputError
+        For an unknown name, a file that holds no model, or a name without its device.
+
+    Examples
+    --------
+    >>> model = named_model("sfoim", Device.preset("device-12"))
+    >>> [band.model.terms[0].shape["order"] for band in model.bands]
+    [0.48, 1.89]
+    """
+    if name not in NAMES:
+        return _from_file(name, where=where)
+    if device is None:
+        raise InputError(name, expected="used with a device", found="none", where=where)
+    if name == "ioim-laminar":
+        return _everywhere(ioim_laminar(device), device)
+    if name == "ioim-turbulent":
+        return _everywhere(ioim_turbulent(device), device)
+    known = _ABOVE if name == "foim" else _BELOW
+    if device.name not in known:
+        raise InputError(
+            f"{name} with the paper's values",
+            expected="used with " + " or ".join(known),
+            found=device.name or "another device",
+            where=where,
+        )
+    above = _ABOVE[device.name]
+    if name == "foim":
+        return _everywhere(foim(device, *above), device)
+    return sfoim(device, _BELOW[device.name], above)
+
+
+def _everywhere(model: ForceModel, device: Device) -> SegmentedModel:
+    return SegmentedModel((Band(None, None, model),), "speed", "paper", device, model.name)
+
+
+def _from_file(name: str, *, where: str) -> SegmentedModel:
+    path = Path(name)
+    if not path.is_file():
+        raise InputError(
+            "model",
+            expected="one of " + ", ".join(NAMES) + ", or a model.json",
+            found=name,
+            where=where,
+        )
+    try:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except (UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise InputError("model", expected="JSON", found=str(error), where=name) from None
+    if not isinstance(table, dict):
+        raise InputError("model", expected="a JSON object", found=type(table).__name__, where=name)
+    return SegmentedModel.from_dict(table, where=name)

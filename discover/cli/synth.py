@@ -1,0 +1,132 @@
+"""``inerter synth``: a campaign from the virtual test rig, or exact records of a model."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from discover.cli import options
+from discover.cli.invocation import Invocation
+from discover.cli.results import working
+from discover.report.folder import check_replaceable, write_folder
+from models.checks import InputError, number
+
+_AMPLITUDES = "5,10,20"
+
+
+def synth(
+    context: typer.Context,
+    folder: Annotated[
+        Path, typer.Argument(metavar="CAMPAIGN-OUT", help="New or empty folder of the campaign.")
+    ],
+    device: Annotated[
+        str, typer.Option("--device", help="device-12, device-10, or a campaign.toml that has one.")
+    ],
+    model: Annotated[
+        str | None,
+        typer.Option(
+            "--model",
+            help="Exact records of this model instead of the rig: ioim-laminar, ioim-turbulent,"
+            " foim, sfoim, or a model.json.",
+        ),
+    ] = None,
+    hide: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--hide",
+            metavar="EFFECT=SIZE",
+            help="Hide an effect; its size is rms change in force over rms force, as 3% or 0.03."
+            " May be given several times; EFFECT:FORM=SIZE chooses its physical form.",
+        ),
+    ] = None,
+    noise: Annotated[
+        str, typer.Option("--noise", help="Force noise, rms over rms force, as 1% or 0.01.")
+    ] = "1%",
+    frequencies: Annotated[
+        str | None,
+        typer.Option(
+            "--frequencies",
+            metavar="GRID",
+            help="Hz, as 0.5,1,2 or 1:10:1 [default: twelve from 0.1 to 15].",
+        ),
+    ] = None,
+    amplitudes: Annotated[
+        str, typer.Option("--amplitudes", metavar="GRID", help="mm, likewise.")
+    ] = _AMPLITUDES,
+    held_out: Annotated[
+        int, typer.Option("--held-out", min=0, help="How many records are marked as held out.")
+    ] = 0,
+    title: Annotated[str | None, typer.Option("--title", help="Of the campaign.")] = None,
+    seed: options.Seed = options.DEFAULT_SEED,
+) -> int:
+    """Write a campaign of sine tests from the virtual test rig, or from a model with --model."""
+    if model is not None and hide:
+        raise InputError("--hide", expected="used with the rig", found="--model", where="synth")
+    share = fraction(noise, where="--noise")
+    sizes = dict(_hidden(item) for item in hide or ())
+    grid_hz = options.grid(frequencies, where="--frequencies")
+    grid_mm = options.grid(amplitudes, where="--amplitudes") or ()
+    check_replaceable(folder, fresh=True)
+
+    from discover.cli.synthesis import campaign_files, known_device, model_records, rig_records
+    from models.rig import Limits, sine_plan
+
+    tested = known_device(device)
+    limits = Limits()
+    plan = sine_plan(
+        tested,
+        frequencies=grid_hz,
+        amplitudes=[1e-3 * a for a in grid_mm],
+        limits=limits,
+        held_out=held_out,
+    )
+    with working(f"Testing {len(plan)} points"):
+        if model is None:
+            records = rig_records(tested, plan, noise=share, hidden=sizes, seed=seed)
+        else:
+            records = model_records(model, tested, plan, noise=share, seed=seed)
+        invocation: Invocation = context.obj
+        files = campaign_files(
+            records,
+            tested,
+            limits,
+            title=title or _title(device, model),
+            command=invocation.repeat(seed=seed),
+        )
+    written = write_folder(folder, files, fresh=True)
+    typer.echo(f"{len(records)} records in {written}")
+    return 0
+
+
+def fraction(text: str, *, where: str) -> float:
+    """Return ``3%`` or ``0.03`` as a fraction.
+
+    Raises
+    ------
+    InputError
+        For text that is no number, or a negative one.
+
+    Examples
+    --------
+    >>> fraction("3%", where="--noise"), fraction("0.03", where="--noise")
+    (0.03, 0.03)
+    """
+    plain = text.strip()
+    if plain.endswith("%"):
+        return number("size", plain[:-1].strip(), at_least=0.0, where=where) / 100.0
+    return number("size", plain, at_least=0.0, where=where)
+
+
+def _hidden(text: str) -> tuple[str, float]:
+    match = re.fullmatch(r"\s*([^=]+?)\s*=\s*(\S+)\s*", text)
+    if match is None:
+        raise InputError("effect", expected="EFFECT=SIZE", found=repr(text), where="--hide")
+    return match[1], fraction(match[2], where=f"--hide {match[1]}")
+
+
+def _title(device: str, model: str | None) -> str:
+    made = "virtual test rig" if model is None else f"exact records of {Path(model).stem}"
+    return f"{device}, sine tests, {made} (simulated)"
