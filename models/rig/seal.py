@@ -1,0 +1,85 @@
+"""Dry friction of the seals: smooth in speed, or with presliding and a Stribeck fall."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from models.checks import Array, number
+
+
+@dataclass(frozen=True)
+class Seal:
+    """Properties of the seals."""
+
+    sliding: float
+    """Friction at high speed, N."""
+    breakaway: float = 1.25
+    """Static over sliding friction."""
+    stribeck_speed: float = 0.008
+    """Speed over which friction falls, m/s."""
+    presliding: float = 6e-5
+    """Displacement over which friction reverses, m."""
+    transition_speed: float = 2e-4
+    """Speed over which the smooth law reverses, m/s."""
+
+    def __post_init__(self) -> None:
+        """Refuse impossible seals."""
+        number("sliding", self.sliding, at_least=0.0, where="seal")
+        number("breakaway", self.breakaway, at_least=1.0, where="seal")
+        for key in ("stribeck_speed", "presliding", "transition_speed"):
+            number(key, getattr(self, key), above=0.0, where="seal")
+
+
+def smooth_friction(seal: Seal, velocity: Array) -> Array:
+    """Return f v/sqrt(v^2 + v_t^2), N, at velocities of any shape.
+
+    Examples
+    --------
+    >>> float(smooth_friction(Seal(sliding=400.0), np.array(1.0)).round(3))
+    400.0
+    """
+    return np.asarray(seal.sliding * velocity / np.hypot(velocity, seal.transition_speed))
+
+
+def presliding_friction(
+    displacement: Array, velocity: Array, *, seal: Seal, passes: int = 2
+) -> Array:
+    """Return LuGre friction along a periodic motion, N.
+
+    dz/dt = v - |v| z/g(v), F = f_c z/z_s with g = z_s (1 + (ratio - 1) exp(-|v|/v_s)): bristles
+    that deflect over z_s before they slide. The step is exact for constant speed within it.
+
+    Parameters
+    ----------
+    displacement, velocity : array, shape (G,)
+        One period of the motion, m and m/s.
+    seal : Seal
+        Its properties.
+    passes : int
+        Periods that are run; the last is returned.
+
+    References
+    ----------
+    C. Canudas de Wit et al., *IEEE Trans. Automatic Control* 40 (1995) 419-425.
+    """
+    limit = 1.0 + (seal.breakaway - 1.0) * np.exp(-np.abs(velocity) / seal.stribeck_speed)
+    steps = np.diff(displacement, prepend=displacement[-1]) / seal.presliding
+    return np.asarray(seal.sliding * _bristles(steps, limit, passes))
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _bristles(steps: Array, limit: Array, passes: int) -> Array:
+    """Return the deflection in units of z_s for steps of displacement in the same unit."""
+    size = steps.size
+    result = np.empty(size)
+    z = 0.0
+    for _ in range(passes):
+        for i in range(size):
+            bound = limit[i] if steps[i] >= 0.0 else -limit[i]
+            z = bound + (z - bound) * math.exp(-abs(steps[i]) / limit[i])
+            result[i] = z
+    return result

@@ -1,0 +1,232 @@
+"""A device behind an elastic element, in time: play, yielding mounts, oil that tears.
+
+The actuator moves one end of the element by y(t); the device, with all its inertance, is at the
+other end: b u'' + drag(u') + wall layer + seal(u') = E(y - u) + d (y' - u'), and E with its damping
+is the force that a load cell sees.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numba import njit
+
+from models.checks import Array
+from models.flow import wall_modes
+from models.rig.drive import Drive
+from models.rig.physics import FlowLaw
+
+_MODES = 10
+_SETTLE = 0.5
+_STEP_ANGLE = 0.35
+_THETA = 0.52
+
+
+@dataclass(frozen=True)
+class Element:
+    """Force E(delta) of the element between actuator and device, piecewise linear."""
+
+    extension: Array
+    """(P,) increasing, m."""
+    force: Array
+    """(P,) non-decreasing, N; continued with the end slopes."""
+    damping: float = 0.0
+    """Parallel damping where the element's slope is at its greatest, N s/m."""
+
+    @property
+    def stiffness(self) -> float:
+        """Greatest slope, N/m."""
+        return float(np.max(np.diff(self.force) / np.diff(self.extension)))
+
+
+def transmitted_force(law: FlowLaw, drive: Drive, element: Element | None) -> Array:
+    """Return the force (G,) that the element transmits, on the drive's grid, N.
+
+    Parameters
+    ----------
+    law : FlowLaw
+        The device.
+    drive : Drive
+        The actuator's motion.
+    element : Element or None
+        What is between them; where the oil yields, its columns do so in series. None for the oil
+        alone.
+
+    Notes
+    -----
+    Implicit in the device's speed (theta method, theta = 0.52; the wall layer's modes exactly for
+    a speed linear in a step), stepped finely enough for the element's resonance. Sine tests are
+    run until transients have died out and the last period is returned; transients once.
+    """
+    inertance = law.device.inertance
+    rates, gain = np.empty(0), 0.0
+    if law.physics.wall:
+        modes = wall_modes(law.device, count=_MODES)
+        rates, gain, inertance = modes.rates, modes.gain, inertance + modes.remainder
+    line, load, damping = _in_series(law, element)
+    slopes = np.diff(load) / np.diff(line)
+    stiffness = float(slopes.max())
+    resonance = math.sqrt(stiffness / inertance)
+    substeps = max(1, math.ceil(resonance * drive.step / _STEP_ANGLE))
+    passes = min(40, 1 + math.ceil(_SETTLE / drive.window)) if drive.periodic else 1
+    seal = law.seal
+    return np.asarray(
+        _march(
+            drive.position,
+            drive.velocity,
+            drive.step,
+            substeps,
+            passes,
+            inertance,
+            np.concatenate([[line[0] - 1.0], line, [line[-1] + 1.0]]),
+            np.concatenate([[load[0] - slopes[0]], load, [load[-1] + slopes[-1]]]),
+            damping,
+            stiffness,
+            law.table,
+            law.top,
+            law.physics.seal == "dynamic",
+            np.array([getattr(seal, key.name) for key in fields(seal)]),
+            rates,
+            gain,
+        )
+    )
+
+
+def _in_series(law: FlowLaw, element: Element | None) -> tuple[Array, Array, float]:
+    """Return extension, load and damping of the element with the oil in series."""
+    if element is None:
+        load = np.array([-1.0, 1.0])
+        return load / law.oil_stiffness, load, 0.0
+    line, load = element.extension, element.force
+    if law.physics.compressibility:
+        line = line + load / law.oil_stiffness
+    return line, load, element.damping
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _element(
+    delta: float, rate: float, x: Array, f: Array, d: float, k: float
+) -> tuple[float, float, float]:
+    """Return the element's force, and its derivatives to delta and rate."""
+    low, high = 0, x.size - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if x[middle] <= delta:
+            low = middle
+        else:
+            high = middle
+    slope = (f[high] - f[low]) / (x[high] - x[low])
+    share = d * slope / k
+    return f[low] + slope * (delta - x[low]) + share * rate, slope, share
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _drag(w: float, table: Array, top: float) -> tuple[float, float]:
+    """Return the steady drag at the speed w and its slope."""
+    step = top / (table.size - 1)
+    place = abs(w) / step
+    i = min(int(place), table.size - 2)
+    rise = table[i + 1] - table[i]
+    return math.copysign(table[i] + (place - i) * rise, w), rise / step
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _friction(
+    w: float,
+    way: float,
+    z: float,
+    dynamic: bool,  # noqa: FBT001 - numba has no keyword-only arguments
+    seal: Array,
+) -> tuple[float, float, float, float]:
+    """Return dry friction after the displacement `way`, its slope to `way`, to w, and the state.
+
+    `seal` holds sliding, breakaway, Stribeck speed, presliding and transition speed; the laws are
+    those of ``models.rig.seal``.
+    """
+    if not dynamic:
+        root = math.hypot(w, seal[4])
+        return seal[0] * w / root, 0.0, seal[0] * seal[4] * seal[4] / root**3, z
+    limit = 1.0 + (seal[1] - 1.0) * math.exp(-abs(w) / seal[2])
+    bound = math.copysign(limit, way)
+    left = math.exp(-abs(way) / (seal[3] * limit))
+    new = bound + (z - bound) * left
+    slope = (bound - z) * left / (seal[3] * bound)
+    return seal[0] * new, seal[0] * slope, 0.0, new
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _march(
+    position: Array,
+    velocity: Array,
+    step: float,
+    substeps: int,
+    passes: int,
+    b: float,
+    x: Array,
+    f: Array,
+    d: float,
+    k: float,
+    table: Array,
+    top: float,
+    dynamic: bool,  # noqa: FBT001 - numba has no keyword-only arguments
+    seal: Array,
+    rates: Array,
+    gain: float,
+) -> Array:
+    """March through the grid `passes` times; return the element's force in the last pass."""
+    size = position.size
+    dt = step / substeps
+    count = rates.size
+    decay, first, last = np.empty(count), np.empty(count), np.empty(count)
+    for m in range(count):
+        h = rates[m] * dt
+        decay[m] = math.exp(-h)
+        mean = -math.expm1(-h) / h
+        first[m], last[m] = mean - decay[m], 1.0 - mean
+    lag = gain * (count - last.sum())
+    memory = np.full(count, velocity[0])
+    result = np.empty(size)
+    u, w, z = position[0], velocity[0], 0.0
+    force, _, _ = _element(0.0, 0.0, x, f, d, k)
+    net = force - _drag(w, table, top)[0] - _friction(w, 0.0, z, dynamic, seal)[0]
+    for sweep in range(passes):
+        for i in range(size):
+            following = (i + 1) % size
+            result[i] = force
+            if sweep == passes - 1 and i == size - 1:
+                break
+            for j in range(substeps):
+                s = (j + 1.0) / substeps
+                y = position[i] + s * (position[following] - position[i])
+                dy = velocity[i] + s * (velocity[following] - velocity[i])
+                past = 0.0
+                for m in range(count):
+                    past += gain * (decay[m] * memory[m] + first[m] * w)
+                low, high = -50.0 * top, 50.0 * top
+                new, z_new, net_new = w, z, net
+                for _ in range(60):
+                    way = dt * (_THETA * new + (1.0 - _THETA) * w)
+                    force, slope, share = _element(y - u - way, dy - new, x, f, d, k)
+                    drag, rise = _drag(new, table, top)
+                    dry, by_way, by_speed, z_new = _friction(new, way, z, dynamic, seal)
+                    net_new = force - drag - dry - (lag * new - past)
+                    error = b * (new - w) - dt * (_THETA * net_new + (1.0 - _THETA) * net)
+                    if error > 0.0:
+                        high = new
+                    else:
+                        low = new
+                    grow = (slope + by_way) * dt * _THETA + share + rise + by_speed + lag
+                    trial = new - error / (b + dt * _THETA * grow)
+                    if not low < trial < high:
+                        trial = 0.5 * (low + high)
+                    done = abs(trial - new) <= 1e-12 + 1e-10 * abs(new)
+                    new = trial
+                    if done:
+                        break
+                for m in range(count):
+                    memory[m] = decay[m] * memory[m] + first[m] * w + last[m] * new
+                u += dt * (_THETA * new + (1.0 - _THETA) * w)
+                w, z, net = new, z_new, net_new
+    return result
