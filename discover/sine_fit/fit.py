@@ -137,7 +137,7 @@ def _scan(tau: Array, z: Array, start: float, duration: float) -> float:
     lowest = 0.4 / duration
     best, best_cost = start, np.inf
     for f in np.linspace(max(lowest, start - 1.5 / duration), start + 1.5 / duration, 61):
-        design = harmonic_design(t, float(f), _allowed(2, float(f), t.size, duration), trend=True)
+        design = harmonic_design(t, float(f), 1, trend=True)  # more would fit f / 2 as well
         residual = y - design @ np.linalg.lstsq(design, y, rcond=None)[0]
         cost = float(residual @ residual)
         if cost < best_cost:
