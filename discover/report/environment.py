@@ -16,12 +16,12 @@ _SHAPES = (("order", ""), ("exponent", ""), ("stribeck_velocity", " m/s"), ("gap
 
 
 def unit(text: str) -> Markup:
-    """Return a unit with raised exponents, as HTML.
+    r"""Return a unit with raised exponents, as HTML.
 
     Examples
     --------
     >>> str(unit("N s^1.89/m"))
-    'N\\xa0s<sup>1.89</sup>/m'
+    'N\xa0s<sup>1.89</sup>/m'
     """
     plain = str(escape(text)).replace("*", "·").replace(" ", "\u00a0")
     return Markup(re.sub(r"\^([-\d.]+)", r"<sup>\1</sup>", plain))
