@@ -30,7 +30,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for verb in (discover, synth):
-    app.command()(verb)
+    app.command(verb.__name__)(verb)
 
 
 def _print_version(value: bool) -> None:
