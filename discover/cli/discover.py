@@ -50,6 +50,7 @@ def discover(
 
     # Loaded here: --help and complaints about options need no numerics.
     from discover.readers import read_campaign
+    from discover.report.document import json_text
     from discover.report.study import study_figures, study_report
     from discover.report.verdict import verdict_lines
     from discover.study import StudyOptions, run_study
@@ -76,7 +77,7 @@ def discover(
         page = study_report(
             document, study.figure_data, figures, command=invocation.repeat(seed=seed)
         )
-    files = {"report.html": page, "model.json": study.model_json()}
+    files = {"report.html": page, "model.json": json_text(study.model_dict())}
     files |= {f"figures/{name}.svg": svg for name, svg in figures.items()}
     deliver(
         document,

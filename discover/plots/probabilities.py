@@ -83,11 +83,11 @@ def _weighed(document: Mapping[str, Any], data: StudyFigureData) -> list[list[tu
     for index, band in enumerate(document.get("bands", ())):
         parts = [(p.structure, p.probability) for p in data.probabilities if p.band == index]
         if not parts:
-            listed = [band, *band.get("equivalents", ())]
-            parts = [
-                (str(e["structure"]), float(e["probability"]))
-                for e in listed
+            stated = {
+                str(e["structure"]): float(e["probability"])
+                for e in (*band.get("equivalents", ()), band)
                 if e.get("probability") is not None
-            ]
+            }
+            parts = list(stated.items())
         result.append(sorted(parts, key=lambda part: -part[1]))
     return result

@@ -152,10 +152,10 @@ def _edge_label(axes: Axes, line: tuple[list[float], list[float]], text: str) ->
 
 def _boundary(axes: Axes, boundary: Mapping[str, Any], coordinate: str) -> None:
     """Draw one boundary with its interval, which scales as the coordinate does."""
-    value = boundary.get("frequency_hz" if coordinate == "frequency" else "speed")
+    value = boundary["coordinate"] if coordinate == "frequency" else boundary.get("speed")
     if not value:
         return
-    spread = relative_interval(boundary, coordinate)
+    spread = relative_interval(boundary)
     first = "boundary" not in axes.get_legend_handles_labels()[1]
     line: dict[str, Any] = {"color": INK, "linewidth": 1.8, "zorder": 3}
     line["label"] = "boundary" if first else None
@@ -174,19 +174,18 @@ def _boundary(axes: Axes, boundary: Mapping[str, Any], coordinate: str) -> None:
         axes.set_ylim(limits)
 
 
-def relative_interval(boundary: Mapping[str, Any], coordinate: str) -> tuple[float, float] | None:
+def relative_interval(boundary: Mapping[str, Any]) -> tuple[float, float] | None:
     """Return a boundary's interval (else its bracket) as multiples of its value.
 
     None where it carries neither.
 
     Examples
     --------
-    >>> relative_interval({"dean": 100.0, "dean_interval": [90.0, 120.0]}, "dean")
+    >>> relative_interval({"coordinate": 100.0, "interval": [90.0, 120.0]})
     (0.9, 1.2)
     """
-    key = {"dean": "dean", "frequency": "frequency_hz"}.get(coordinate, "speed")
-    value = boundary.get(key)
-    interval = boundary.get(f"{coordinate}_interval") or boundary.get("bracket")
+    value = boundary["coordinate"]
+    interval = boundary.get("interval") or boundary.get("bracket")
     if not value or not interval or None in interval:
         return None
     return float(interval[0]) / float(value), float(interval[1]) / float(value)

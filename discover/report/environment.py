@@ -11,6 +11,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from discover.report import words
+from discover.report.verdict import not_ruled_out
 
 _SHAPES = (("order", ""), ("exponent", ""), ("stribeck_velocity", " m/s"), ("gap", " m"))
 
@@ -63,6 +64,7 @@ def environment() -> jinja2.Environment:
         interval=words.interval,
         counted=words.counted,
         band_range=words.band_range,
+        not_ruled_out=not_ruled_out,
         unit=unit,
         shape=shape,
     )

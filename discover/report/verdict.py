@@ -83,8 +83,7 @@ def certainty_line(document: Mapping[str, Any]) -> str:
     for number, band in enumerate(document["bands"], start=1):
         text = f"{band['structure']} {probability(band.get('probability'))}"
         others = [
-            f"{e['structure']} ({probability(e['probability'])})"
-            for e in band.get("equivalents", ())
+            f"{e['structure']} ({probability(e['probability'])})" for e in not_ruled_out(band)
         ]
         if others:
             text += f", {listed(others)} not ruled out"
@@ -93,6 +92,11 @@ def certainty_line(document: Mapping[str, Any]) -> str:
         return "Certainty: nothing to weigh."
     ending = "" if document.get("identifiable", True) else "; these records leave that open"
     return f"Certainty: {'; '.join(parts)}{ending}."
+
+
+def not_ruled_out(band: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return a band's equivalents without its own structure."""
+    return [e for e in band.get("equivalents", ()) if e["structure"] != band["structure"]]
 
 
 _WHY = {
@@ -138,12 +142,8 @@ def next_line(document: Mapping[str, Any]) -> str:
 def boundary_text(boundary: Mapping[str, Any], document: Mapping[str, Any]) -> str:
     """Return one boundary in words, in the study's coordinate."""
     coordinate = str(document["coordinate"])
-    key = {"dean": "dean", "frequency": "frequency_hz"}.get(coordinate, "speed")
-    value = boundary.get(key)
-    if value is None:
-        return "a boundary whose place is not known"
-    text = f"{coordinate_name(document)} {coordinate_value(value, coordinate)}"
-    spread = interval(boundary.get(f"{coordinate}_interval"))
+    text = f"{coordinate_name(document)} {coordinate_value(boundary['coordinate'], coordinate)}"
+    spread = interval(boundary.get("interval"))
     if spread:
         text += f" (interval {spread})"
     bracket = interval(boundary.get("bracket"))

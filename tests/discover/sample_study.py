@@ -123,7 +123,10 @@ def sample_document():
                 "relative_error_percent": 2.3,
                 "noise_percent": 2.0,
                 "probability": 0.81,
-                "equivalents": [{"structure": "IOIM-linear", "probability": 0.17}],
+                "equivalents": [
+                    {"structure": "FOIM", "probability": 0.81},
+                    {"structure": "IOIM-linear", "probability": 0.17},
+                ],
             },
             {
                 "lower": 98.0,
@@ -143,7 +146,7 @@ def sample_document():
                 "relative_error_percent": 2.2,
                 "noise_percent": 2.0,
                 "probability": 0.985,
-                "equivalents": [],
+                "equivalents": [{"structure": "IOIM-laminar", "probability": 0.985}],
             },
         ],
         "nuisance": [
@@ -151,6 +154,8 @@ def sample_document():
         ],
         "boundaries": [
             {
+                "coordinate": 98.0,
+                "interval": [84.0, 117.0],
                 "dean": 98.0,
                 "dean_interval": [84.0, 117.0],
                 "speed": 98.0 / SPEED_TO_DEAN,

@@ -56,7 +56,7 @@ def test_bad_input_is_one_line_on_stderr_and_exits_2(
 
 
 def test_an_interrupt_exits_130(capsys, monkeypatch):
-    def interrupted(**_):
+    def interrupted():
         raise KeyboardInterrupt
 
     monkeypatch.setattr(app.app.registered_commands[0], "callback", interrupted)
@@ -66,7 +66,7 @@ def test_an_interrupt_exits_130(capsys, monkeypatch):
 
 
 def test_a_fault_of_the_program_is_told_apart_from_a_failed_check(capsys, monkeypatch):
-    def broken(**_):
+    def broken():
         raise ZeroDivisionError("by\nzero")
 
     monkeypatch.delenv("INERTER_DEBUG", raising=False)

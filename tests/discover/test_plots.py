@@ -3,7 +3,6 @@ import re
 import xml.etree.ElementTree as ElementTree
 
 import matplotlib
-import pytest
 
 from discover.plots.errors import error_by_record
 from discover.plots.loops import loops, representative
@@ -54,16 +53,25 @@ def test_map_of_one_test_has_axes_of_finite_width():
     assert "Frequency (Hz)" in words(record_map(sample_document(), data))
 
 
-@pytest.mark.parametrize("coordinate", ["speed", "frequency"])
-def test_interval_in_the_coordinate_else_the_bracket(coordinate):
-    key = {"speed": "speed", "frequency": "frequency_hz"}[coordinate]
-    boundary = {key: 2.0, "bracket": [1.0, 4.0]}
-    assert relative_interval(boundary, coordinate) == (0.5, 2.0)
-    assert relative_interval(boundary | {f"{coordinate}_interval": [1.5, 3.0]}, coordinate) == (
-        0.75,
-        1.5,
+def test_interval_of_a_boundary_else_its_bracket():
+    boundary = {"coordinate": 2.0, "bracket": [1.0, 4.0]}
+    assert relative_interval(boundary) == (0.5, 2.0)
+    assert relative_interval(boundary | {"interval": [1.5, 3.0]}) == (0.75, 1.5)
+    assert relative_interval({"coordinate": 2.0}) is None
+    assert relative_interval({"coordinate": 2.0, "bracket": [1.0, None]}) is None
+
+
+def test_a_boundary_in_frequency_stands_upright():
+    document = sample_document()
+    document["coordinate"] = "frequency"
+    document["boundaries"][0] |= {"coordinate": 1.2, "interval": [1.0, 1.4], "frequency_hz": 9.9}
+    svg = record_map(document, sample_data())
+    line = next(
+        path
+        for path in re.findall(r'<path d="([^"]+)"[^>]*stroke: #1d2733; stroke-width: 1.8', svg)
     )
-    assert relative_interval({key: 2.0}, coordinate) is None
+    abscissae = {float(a) for a in re.findall(r"[ML] ([\d.]+) ", line)}
+    assert len(abscissae) == 1
 
 
 def test_loops_show_both_curves_in_prefixed_units():
