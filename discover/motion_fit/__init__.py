@@ -1,0 +1,49 @@
+"""From a record to its motion and the spectral lines of its force, by kind of record."""
+
+from __future__ import annotations
+
+from discover.motion_fit.band import observe_band, observe_periodic
+from discover.motion_fit.harmonic import observe_sine
+from discover.motion_fit.observation import Lines, Observation, Window, real_rows
+from discover.record_kind import classify
+from discover.records import Record
+from models.checks import InputError
+
+_FEWEST_PERIODS = 4  # from which averaging over periods tells noise from motion
+
+
+def observe(record: Record) -> Observation:
+    """Return the observation of a record of any kind.
+
+    Parameters
+    ----------
+    record : Record
+        Measured record.
+
+    Returns
+    -------
+    Observation
+        Motion by harmonics for a sine test, by spectrum for a periodic record, band-limited
+        otherwise.
+
+    Raises
+    ------
+    InputError
+        Where the record can't be used, with its name.
+    """
+    kind = classify(record)
+    if kind.kind == "sine":
+        frequency = kind.frequency or record.frequency
+        if frequency is None:
+            raise InputError("frequency", expected="found or given", where=record.file)
+        coefficients = None if kind.sine is None else kind.sine.coefficients
+        noise = 0.0 if kind.sine is None else kind.sine.noise_rms
+        return observe_sine(record, kind.usable, frequency, coefficients, noise)
+    repeats = (kind.cycles or 0.0) >= _FEWEST_PERIODS
+    if kind.kind == "periodic" and kind.period is not None and repeats:
+        return observe_periodic(record, kind.usable, round(kind.period / record.step))
+    name = kind.kind if kind.kind == "transient" else "trajectory"
+    return observe_band(record, kind.usable, name)
+
+
+__all__ = ["Lines", "Observation", "Window", "observe", "real_rows"]

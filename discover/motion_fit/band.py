@@ -19,6 +19,7 @@ _GUARD = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
 _NYQUIST_SHARE = 0.9
 _RELATIVE_FLOOR = 1e-6
 _TAPER = 0.1
+_EDGE_PERIODS = 4.0
 _LINES_PER_WINDOW = 40
 _MAX_WINDOWS = 16
 
@@ -100,18 +101,21 @@ def _line_variance(
 def _pieces(size: int, cutoff: float) -> list[tuple[int, Array]]:
     """Return start and taper of windows whose squared tapers add up to one.
 
-    Neighbours cross over within a tenth of their length, so no sample counts more than another;
-    only the ends of the record fade, over a period of the band's end or a twentieth.
+    Neighbours cross over within a tenth of their length, so no sample counts more than another.
+    The record's ends, where derivatives rest on what is not there, are left out: four periods of
+    the band's end, at most a twentieth.
     """
+    edge = min(int(np.ceil(_EDGE_PERIODS / cutoff)), size // 20)
+    inner = size - 2 * edge
     count = int(np.clip(size * cutoff / _LINES_PER_WINDOW, 1, _MAX_WINDOWS))
-    ends = np.linspace(0, size, count + 1).astype(int)
-    half = max(int(0.5 * _TAPER * size / count), 1)
-    fade = min(int(np.ceil(1.0 / cutoff)), size // 20) or 1
+    ends = edge + np.linspace(0, inner, count + 1).astype(int)
+    half = max(int(0.5 * _TAPER * inner / count), 1)
+    fade = max(int(np.ceil(1.0 / cutoff)), 1)
     pieces = []
     for index in range(count):
         first, last = index == 0, index == count - 1
-        start = 0 if first else int(ends[index]) - half
-        stop = size if last else int(ends[index + 1]) + half
+        start = int(ends[index]) - (0 if first else half)
+        stop = int(ends[index + 1]) + (0 if last else half)
         taper = np.ones(stop - start)
         rise, fall = (fade if first else 2 * half), (fade if last else 2 * half)
         taper[:rise] = np.sin(0.5 * np.pi * (np.arange(rise) + 0.5) / rise)
@@ -154,9 +158,15 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
     time, x, force = record.time[usable], record.displacement[usable], record.force[usable]
     cutoff = choose_cutoff(x, step, where=record.file)
     reference = x - x[0]
+    _, _, x_noise = _line_variance(x, force, step, cutoff, np.zeros(1))
+    edge_noise = float(np.clip(x_noise / np.std(x), 1e-7, 1e-2))
 
     def differentiate(orders: Array) -> Array:
-        return np.asarray(band_limited_derivative(reference, orders, step, cutoff=cutoff))
+        return np.asarray(
+            band_limited_derivative(
+                reference, orders, step, cutoff=cutoff, edge_noise=edge_noise
+            )
+        )
 
     position, velocity, acceleration = differentiate(np.array([0.0, 1.0, 2.0]))
     motion = Motion(
@@ -164,6 +174,7 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
     )
     motion = _measured(record, usable, motion, cutoff)
     pieces = _pieces(time.size, cutoff * step)
+    inner = slice(pieces[0][0], pieces[-1][0] + pieces[-1][1].size)
     mass = sum(float(np.sum(taper**2)) for _, taper in pieces)
     mean_power = float(np.mean(force**2))
     windows = []
@@ -188,6 +199,7 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
                 amplitude=float(np.sqrt(2.0) * x_rms),
                 speed=float(np.sqrt(2.0) * v_rms),
                 rest=0.0,
+                noise_power=float(2.0 * np.sum(variance)),
                 share=float(np.sum(taper**2)) / mass,
             )
         )
@@ -196,9 +208,9 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         kind=kind,
         motion=motion,
         windows=tuple(windows),
-        time=time,
-        measured=np.asarray(low_pass(force, step, cutoff=cutoff)),
-        at_samples=lambda column: np.asarray(low_pass(column, step, cutoff=cutoff)),
+        time=time[inner],
+        measured=np.asarray(low_pass(force, step, cutoff=cutoff))[inner],
+        at_samples=lambda column: np.asarray(low_pass(column, step, cutoff=cutoff))[inner],
         displacement_noise=noise[1],
         force_noise=noise[0],
         cutoff=cutoff,
@@ -260,6 +272,7 @@ def observe_periodic(record: Record, usable: slice, period: int) -> Observation:
         amplitude=float(np.sqrt(2.0) * x_rms),
         speed=float(np.sqrt(2.0) * v_rms),
         rest=float(np.mean((each_f - force) ** 2)),
+        noise_power=noise_f**2,
     )
     return Observation(
         record=record,

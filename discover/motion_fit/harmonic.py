@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import nnls
 
-from discover.motion_fit.noise import density_at_lines
+from discover.motion_fit.noise import density_between_lines
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
 from discover.records import Record
 from discover.sine_fit import harmonic_design
@@ -110,19 +110,21 @@ def observe_sine(
 
     multiples = frequency * np.arange(count + 1)
     if record.uniform:
-        density = density_at_lines(
-            residual, record.step, multiples, multiples, half_width=0.5 * frequency
-        )
+        density = density_between_lines(residual, record.step, frequency, multiples)
+        every = frequency * np.arange(1, int(0.5 / record.step / frequency) + 1)
+        spread = every[:: max(every.size // 64, 1)]
+        level = density_between_lines(residual, record.step, frequency, spread)
+        noise = float(np.sqrt(np.mean(level) * 0.5 / record.step))
     else:
         freedom = max(time.size - design.shape[1], 1)
         density = np.full(count + 1, 2.0 * duration / time.size * (residual @ residual) / freedom)
+        noise = float(np.sqrt(residual @ residual / freedom))
     power = float(np.sum(np.abs(lines) ** 2))
     variance = np.maximum(density / (2.0 * duration), _RELATIVE_FLOOR**2 * power)
     fitted_phase = displacement is None
     if displacement is None:
         displacement = _fit_phase(record, lines, project, time, frequency, variance)
     motion = _motion_at(time, frequency, displacement)
-    noise = float(np.sqrt(residual @ residual / max(time.size - design.shape[1], 1)))
     speed = 2.0 * np.pi * frequency * float(abs(displacement[1]))
     window = Window(
         omega=2.0 * np.pi * multiples,
@@ -133,6 +135,7 @@ def observe_sine(
         amplitude=float(abs(displacement[1])),
         speed=speed,
         rest=float(residual @ residual / time.size),
+        noise_power=noise**2,
     )
     return Observation(
         record=record,

@@ -6,6 +6,8 @@ import numpy as np
 
 from models.checks import Array
 
+_FEWEST_BINS = 4.0  # between harmonics, for a gap to be there
+
 
 def power_density(residual: Array, step: float) -> tuple[Array, Array]:
     """Return frequencies (Hz) and the one-sided power density of a Hann-tapered signal.
@@ -27,26 +29,26 @@ def power_density(residual: Array, step: float) -> tuple[Array, Array]:
     return np.fft.rfftfreq(residual.size, step), 2.0 * step * spectrum / np.sum(taper**2)
 
 
-def density_at_lines(
-    residual: Array, step: float, lines: Array, removed: Array, *, half_width: float
+def density_between_lines(
+    residual: Array, step: float, frequency: float, lines: Array
 ) -> Array:
-    """Return the noise density at each of `lines`, from the bins around it.
+    """Return the noise density at each of `lines`, from the bins between a record's harmonics.
 
-    A least-squares fit has removed the lines themselves: of the bins in each window the removed
-    ones carry nothing, so the mean is over the degrees of freedom that are left.
+    Bins beside a multiple of the test's frequency are left out, fitted or not; of the others near
+    a line the median is taken, so that neither mains hum nor a harmonic that aliasing has put
+    between the lines counts as noise. With too few cycles for a gap between harmonics, the mean
+    over the degrees of freedom that the fit has left is taken instead.
 
     Parameters
     ----------
     residual : ndarray, shape (N,)
-        What the fit left.
+        What a fit of the harmonics left.
     step : float
         Sampling interval, s.
+    frequency : float
+        Of the test, Hz.
     lines : ndarray, shape (L,)
         Frequencies to judge at, Hz.
-    removed : ndarray, shape (M,)
-        Frequencies that the fit removed, Hz.
-    half_width : float
-        Half width of the window, Hz; at least four bins are taken on each side.
 
     Returns
     -------
@@ -55,12 +57,27 @@ def density_at_lines(
     """
     frequencies, density = power_density(residual, step)
     bin_width = frequencies[1]
-    width = max(half_width, 4.0 * bin_width)
-    total = np.concatenate(([0.0], np.cumsum(density)))
-    low = np.clip(np.ceil((lines - width) / bin_width).astype(int), 0, frequencies.size - 1)
-    high = np.clip(np.floor((lines + width) / bin_width).astype(int), 0, frequencies.size - 1)
-    bins = high - low + 1
-    gone = np.searchsorted(removed, (high + 0.5) * bin_width) - np.searchsorted(
-        removed, (low - 0.5) * bin_width
-    )
-    return (total[high + 1] - total[low]) / np.maximum(bins - gone, 1)
+    spacing = frequency / bin_width
+    distance = np.abs(np.mod(frequencies / frequency + 0.5, 1.0) - 0.5) * spacing
+    if spacing < _FEWEST_BINS:
+        width = max(frequency, 4.0 * bin_width)
+        near = np.abs(frequencies[None, :] - lines[:, None]) <= width
+        gone = np.array([np.sum(distance[row] < 0.5) for row in near])
+        bins = near.sum(axis=1)
+        return np.asarray((near @ density) / np.maximum(bins - gone, 1))
+    clear = np.flatnonzero(distance > 1.5)
+    clear = clear if clear.size >= 5 else np.flatnonzero(distance > 0.5)
+    width = max(1.5 * frequency, 4.0 * bin_width)
+    result = np.empty(lines.size)
+    for index, line in enumerate(lines):
+        low, high = np.searchsorted(frequencies[clear], (line - width, line + width))
+        low = max(min(low, clear.size - 5), 0)
+        some = density[clear[low : max(high, low + 5)]]
+        result[index] = float(np.median(some)) / _median_of_exponentials(some.size)
+    return result
+
+
+def _median_of_exponentials(count: int) -> float:
+    """Return the expected median of `count` unit exponential variables."""
+    odd = count if count % 2 else count - 1
+    return float(np.sum(1.0 / np.arange((odd + 1) // 2, odd + 1)))

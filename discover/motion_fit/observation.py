@@ -48,7 +48,9 @@ class Window:
     speed: float
     """m/s: velocity amplitude, likewise."""
     rest: float
-    """N^2: mean square of the measured force that is in none of the lines (noise, in a sine)."""
+    """N^2: mean square of the measured force that is in none of the lines."""
+    noise_power: float
+    """N^2: mean square of the force's noise."""
     share: float = 1.0
     """Part of the record's duration."""
 
@@ -56,11 +58,6 @@ class Window:
     def power(self) -> float:
         """Mean square of the measured force, N^2."""
         return float(np.sum(np.abs(self.force) ** 2)) + self.rest
-
-    @property
-    def noise_power(self) -> float:
-        """Mean square of the force's noise, N^2."""
-        return self.rest + float(2.0 * np.sum(self.variance))
 
 
 @dataclass(frozen=True)

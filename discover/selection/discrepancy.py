@@ -1,7 +1,7 @@
-"""How far the richest model stays from the data: the error that no structure here explains.
+"""How far the best structure stays from the data: the error that none of them explains.
 
 On a measured device every structure is wrong by a little, and noise alone would then reject them
-all and choose the most complex. What a rich model leaves, above the noise, is added to the noise:
+all and choose the most complex. What the best one leaves, above the noise, is added to the noise:
 by harmonic in sine tests, by part of the band in others, in proportion to each record's force.
 It is found in groups of neighbouring records, so that a boundary between bands does not count.
 """
@@ -14,54 +14,38 @@ from dataclasses import replace
 import numpy as np
 
 from discover.library.dictionary import Dictionary
+from discover.regression.support import ProfiledFit, Support, SupportFit
+from discover.selection.materiality import relative_triangle
 from discover.triangle import WindowRows
 from models.checks import Array
 
 _GROUP = 9
-_ORDER_NODES = 5
-_EXPONENT_NODES = 3
+_INFORMATIVE = 4  # blocks of a window that carry a model's error: the lowest harmonics
 
 
-def rich_weights(dictionary: Dictionary) -> Array:
-    """Return (K, k) of the rich model: every fixed term, some orders and exponents."""
-    seen: set[str] = set()
-    vectors = []
-    for index, column in enumerate(dictionary.columns):
-        if column.id not in seen:
-            seen.add(column.id)
-            vectors.append(np.eye(dictionary.size)[index])
-    for family, nodes in (
-        ("fractional-derivative", _ORDER_NODES),
-        ("power-law-damping", _EXPONENT_NODES),
-    ):
-        found = dictionary.family(family)
-        if found is None:
-            continue
-        values = np.linspace(found[0].lower, found[0].upper, nodes + 2)[1:-1]
-        weights = np.zeros((dictionary.size, nodes))
-        weights[found[1]] = found[0].weights(values)
-        vectors.extend(weights.T)
-    if dictionary.delay:
-        vectors.append(np.eye(dictionary.size)[-1])
-    return np.array(vectors).T
+def _residual(
+    windows: Sequence[WindowRows], dictionary: Dictionary, supports: Sequence[Support]
+) -> tuple[list[Array], float]:
+    """Return the best support's residual rows by window, and the share of freedom left."""
+    engine = ProfiledFit(relative_triangle(windows), dictionary)
+    fits = [engine.fit(s) for s in supports]
+    informative = 2.0 * sum(min(w.count.size, _INFORMATIVE) for w in windows)
+
+    def cost(fit: SupportFit) -> float:
+        spent = fit.support.parameters * np.log(informative) / informative
+        return float(np.log(max(fit.chi2, 1e-300)) + spent)
+
+    best = min([f for f in fits if f.valid] or fits, key=cost)
+    combined = best.combined
+    residual = [w.matrix[:, -1] - w.matrix[:, :-1] @ combined for w in windows]
+    return residual, max(1.0 - best.support.parameters / informative, 0.25)
 
 
-def _residual(windows: Sequence[WindowRows], weights: Array) -> tuple[list[Array], float]:
-    """Return unwhitened residual rows by window, and the share of freedom that is left."""
-    white = np.concatenate([w.whitened(0.0) for w in windows])
-    columns, target = white[:, :-1] @ weights, white[:, -1]
-    norms = np.linalg.norm(columns, axis=0)
-    norms[norms == 0.0] = 1.0
-    solution, _, rank, _ = np.linalg.lstsq(columns / norms, target, rcond=1e-8)
-    solution /= norms
-    residual = [w.matrix[:, -1] - w.matrix[:, :-1] @ (weights @ solution) for w in windows]
-    informative = 2.0 * sum(min(w.count.size, 4) for w in windows)
-    return residual, max(1.0 - float(rank) / informative, 0.25)
-
-
-def _share(windows: Sequence[WindowRows], weights: Array) -> tuple[Array, Array]:
+def _share(
+    windows: Sequence[WindowRows], dictionary: Dictionary, supports: Sequence[Support]
+) -> tuple[Array, Array]:
     """Return by block the excess of the misfit over the noise, relative to power, and its error."""
-    residual, freedom = _residual(windows, weights)
+    residual, freedom = _residual(windows, dictionary, supports)
     size = max(w.count.size for w in windows)
     excess, error, power = np.zeros(size), np.zeros(size), np.zeros(size)
     for window, rows in zip(windows, residual, strict=True):
@@ -76,9 +60,12 @@ def _share(windows: Sequence[WindowRows], weights: Array) -> tuple[Array, Array]
 
 
 def with_discrepancy(
-    windows: Sequence[WindowRows], dictionary: Dictionary, coordinate: Array
+    windows: Sequence[WindowRows],
+    dictionary: Dictionary,
+    coordinate: Array,
+    supports: Sequence[Support],
 ) -> list[WindowRows]:
-    """Return the windows with the model error that a rich model leaves in groups of neighbours.
+    """Return the windows with the model error that the best support leaves among neighbours.
 
     Parameters
     ----------
@@ -88,6 +75,8 @@ def with_discrepancy(
         Of their columns, with one friction column.
     coordinate : ndarray, shape (W,)
         By which neighbours are found.
+    supports : sequence of Support
+        The models that compete; each group of neighbours takes the best.
 
     Returns
     -------
@@ -96,10 +85,9 @@ def with_discrepancy(
     """
     order = np.argsort(coordinate, kind="stable")
     groups = np.array_split(order, max(1, order.size // _GROUP))
-    weights = rich_weights(dictionary)
     shares, errors = [], []
     for group in groups:
-        share, error = _share([windows[i] for i in group], weights)
+        share, error = _share([windows[i] for i in group], dictionary, supports)
         shares.append(share)
         errors.append(error)
     size = max(s.size for s in shares)

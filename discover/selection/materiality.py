@@ -3,7 +3,9 @@
 Where the misfit is far above the noise, what remains is an effect that no term here is, and a
 further term that takes a small part of it has likely taken something else's name. So a term's own
 gain (misfit energy without it less with it) must exceed the energy that remains above the noise.
-Where noise is the limit nothing remains, and the rule never bites: evidence alone decides.
+The same holds for a shape: an order or exponent is named only if it explains more, over the
+nearest plain terms, than remains. Where noise is the limit nothing remains, and the rule never
+bites: evidence alone decides.
 
 The energies are relative to each record's force, so that quiet records count as loud ones do.
 """
@@ -17,6 +19,12 @@ import numpy as np
 from discover.library.dictionary import Dictionary
 from discover.regression.support import ProfiledFit, Support
 from discover.triangle import Triangle, WindowRows, reduce_rows
+
+_PLAIN_KIN = {
+    "fractional-derivative": ("inertia", "viscous-damping", "stiffness"),
+    "power-law-damping": ("coulomb-friction", "viscous-damping", "quadratic-damping"),
+}
+_AT_BOUND = 1e-3  # of the range: a shape this near its end is not identified
 
 
 def record_power(windows: Sequence[WindowRows]) -> dict[int, float]:
@@ -69,11 +77,34 @@ class Materiality:
         left = max(self.unexplained(support), 1e-30)
         own = self.misfit(support)
         gains = [(i, (self.misfit(without(support, i)) - own) / left) for i in support.ids]
-        return min(gains, key=lambda g: g[1])
+        gains += [
+            (i, (self.misfit(replaced(support, i, plain)) - own) / left)
+            for i in support.free
+            for plain in _PLAIN_KIN[i]
+            if self._engine.dictionary.has(plain)
+        ]
+        return min(gains, key=lambda g: g[1], default=("", np.inf))
 
     def holds(self, support: Support) -> bool:
-        """Return whether every term explains more than remains unexplained."""
+        """Return whether every term, and every shape, explains more than remains unexplained."""
+        if self.unexplained(support) == 0.0:
+            return True
+        fit = self._engine.fit(support)
+        for identifier, value in zip(support.free, fit.shapes, strict=False):
+            found = self._engine.dictionary.family(identifier)
+            if found is not None:
+                margin = _AT_BOUND * (found[0].upper - found[0].lower)
+                if not found[0].lower + margin < value < found[0].upper - margin:
+                    return False
         return self.weakest(support)[1] >= 1.0
+
+
+def replaced(support: Support, identifier: str, plain: str) -> Support:
+    """Return the support with a free family replaced by a plain term."""
+    rest = without(support, identifier)
+    if plain in rest.plain:
+        return rest
+    return Support((*rest.plain, plain), rest.free, rest.fixed)
 
 
 def without(support: Support, identifier: str) -> Support:

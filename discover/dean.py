@@ -1,0 +1,235 @@
+"""The Dean-number criterion, checked: does the boundary lie where, and move as, it says?
+
+Under the criterion De = 100 the boundary's frequency falls as the inverse of the amplitude,
+f_low ~ A^k with k = -1; a boundary fixed in frequency has k = 0. With the bands' models held, a
+line log f = c + k log A divides the tests in two, and the evidence of every such division gives
+the posterior of k and of the boundary's place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.special import logsumexp
+
+from discover.triangle import WindowRows
+from models.checks import Array
+from models.device import Device
+from models.flow import dean_per_speed
+
+VERDICTS = ("consistent", "contradicted", "undetermined", "no-boundary", "no-geometry")
+_EXPONENTS = np.linspace(-3.0, 2.0, 101)
+_PLACES = 400
+_SAME_AMPLITUDE = 1.15  # ratio below which amplitudes count as one
+
+
+@dataclass(frozen=True)
+class DeanCheck:
+    """Whether the lowest boundary agrees with the Dean-number criterion."""
+
+    convention: str
+    """Convention of the Dean number that is checked."""
+    criterion: float
+    """Critical Dean number in that convention."""
+    verdict: str
+    """One of `VERDICTS`."""
+    boundary_dean: float | None
+    """At the boundary, in that convention."""
+    interval: tuple[float, float] | None
+    """Of 95 %, in that convention; at least the bracket between neighbouring tests."""
+    boundary_dean_paper: float | None
+    """At the boundary by the paper's convention."""
+    boundary_dean_standard: float | None
+    """At the boundary by the standard convention."""
+    amplitude_exponent: float | None
+    """k in f_low ~ A^k."""
+    amplitude_exponent_interval: tuple[float, float] | None
+    """Of 95 %."""
+    reason: str
+    """The verdict in words, and what would decide it where it is open."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "convention": self.convention,
+            "criterion": self.criterion,
+            "verdict": self.verdict,
+            "boundary_dean": self.boundary_dean,
+            "interval": self.interval,
+            "boundary_dean_paper": self.boundary_dean_paper,
+            "boundary_dean_standard": self.boundary_dean_standard,
+            "amplitude_exponent": self.amplitude_exponent,
+            "amplitude_exponent_interval": self.amplitude_exponent_interval,
+            "reason": self.reason,
+        }
+
+
+@dataclass(frozen=True)
+class AmplitudeExponent:
+    """Posterior of k in f_low ~ A^k."""
+
+    value: float
+    """Mean."""
+    interval: tuple[float, float]
+    """Central 95 %."""
+    speed: tuple[float, float]
+    """95 % of the boundary's speed amplitude (m/s) at the plan's middle, any k."""
+
+
+def amplitude_exponent(
+    windows: Sequence[WindowRows], below: Array, above: Array
+) -> AmplitudeExponent | None:
+    """Return how the boundary's frequency follows the amplitude.
+
+    Parameters
+    ----------
+    windows : sequence of WindowRows
+        The tests.
+    below, above : ndarray, shape (W,)
+        Log likelihood of each test under the lower and the upper band's model.
+
+    Returns
+    -------
+    AmplitudeExponent or None
+        None where the tests have one amplitude only.
+    """
+    amplitude = np.log(np.array([w.amplitude for w in windows]))
+    frequency = np.log(np.array([w.frequency for w in windows]))
+    if np.ptp(amplitude) < np.log(_SAME_AMPLITUDE):
+        return None
+    centre = amplitude.mean()
+    gain = below - above
+    logs = np.empty((_EXPONENTS.size, _PLACES))
+    low, high = frequency.min() - 1.0, frequency.max() + 1.0
+    places = np.linspace(low, high, _PLACES)
+    for row, k in enumerate(_EXPONENTS):
+        shifted = frequency - k * (amplitude - centre)
+        order = np.argsort(shifted)
+        total = np.concatenate(([0.0], np.cumsum(gain[order])))
+        logs[row] = total[np.searchsorted(shifted[order], places)]
+    inside = (places > frequency.min()) & (places < frequency.max())
+    logs = np.where(inside, logs, -np.inf)
+    posterior = np.exp(logs - logsumexp(logs))
+    of_k = posterior.sum(axis=1)
+    of_place = posterior.sum(axis=0)
+    return AmplitudeExponent(
+        float(of_k @ _EXPONENTS),
+        _central(_EXPONENTS, of_k),
+        tuple(  # type: ignore[arg-type]
+            float(2.0 * np.pi * np.exp(p + centre)) for p in _central(places, of_place)
+        ),
+    )
+
+
+def _central(values: Array, probabilities: Array) -> tuple[float, float]:
+    total = np.cumsum(probabilities)
+    low = values[np.searchsorted(total, 0.025)]
+    high = values[min(int(np.searchsorted(total, 0.975)), values.size - 1)]
+    return float(low), float(high)
+
+
+def check_dean(
+    device: Device | None,
+    boundary: tuple[float, tuple[float, float]] | None,
+    exponent: AmplitudeExponent | None,
+    *,
+    convention: str,
+    criterion: float,
+) -> DeanCheck:
+    """Return the verdict on the criterion.
+
+    Parameters
+    ----------
+    device : Device or None
+        Without it there is no Dean number.
+    boundary : tuple or None
+        Speed amplitude at the lowest boundary and its interval, m/s; None where there is none.
+    exponent : AmplitudeExponent or None
+        None where the plan has one amplitude.
+    convention, criterion
+        What is checked.
+
+    Returns
+    -------
+    DeanCheck
+    """
+    k = None if exponent is None else exponent.value
+    k_interval = None if exponent is None else exponent.interval
+
+    def result(
+        verdict: str,
+        reason: str,
+        dean: tuple[float, tuple[float, float]] | None = None,
+        both: tuple[float, float] | None = None,
+    ) -> DeanCheck:
+        return DeanCheck(
+            convention,
+            criterion,
+            verdict,
+            None if dean is None else dean[0],
+            None if dean is None else dean[1],
+            None if both is None else both[0],
+            None if both is None else both[1],
+            k if boundary is not None else None,
+            k_interval if boundary is not None else None,
+            reason,
+        )
+
+    if boundary is None:
+        return result("no-boundary", "One structure holds over all tests: there is no boundary.")
+    if device is None:
+        return result(
+            "no-geometry",
+            "Without the device's geometry there is no Dean number; give [device] in"
+            " campaign.toml.",
+        )
+    speed, (low, high) = boundary
+    scale = dean_per_speed(device, convention=convention)
+    dean = (scale * speed, (scale * low, scale * high))
+    both = (
+        dean_per_speed(device, convention="paper") * speed,
+        dean_per_speed(device, convention="standard") * speed,
+    )
+    holds = dean[1][0] <= criterion <= dean[1][1]
+    span = f"{dean[1][0]:.3g} to {dean[1][1]:.3g} ({convention} convention)"
+    if k_interval is None:
+        return result(
+            "undetermined",
+            f"The boundary lies at a Dean number of {span}, but the tests have one amplitude: a"
+            " boundary fixed in frequency would look the same. Repeat the tests beside the"
+            " boundary at half and at twice the amplitude.",
+            dean,
+            both,
+        )
+    moves, fixed = (k_interval[0] <= value <= k_interval[1] for value in (-1.0, 0.0))
+    exponent_text = f"f_low ~ A^k with k from {k_interval[0]:.2f} to {k_interval[1]:.2f}"
+    if not moves:
+        return result(
+            "contradicted", f"{exponent_text}: the criterion needs k = -1.", dean, both
+        )
+    if not holds:
+        return result(
+            "contradicted",
+            f"The boundary lies at a Dean number of {span}, which leaves {criterion:g} out;"
+            f" {exponent_text}.",
+            dean,
+            both,
+        )
+    if fixed:
+        return result(
+            "undetermined",
+            f"The boundary lies at a Dean number of {span}, but {exponent_text} holds both -1 (the"
+            " criterion) and 0 (fixed in frequency). Amplitudes further apart would tell.",
+            dean,
+            both,
+        )
+    return result(
+        "consistent",
+        f"The boundary lies at a Dean number of {span}, which holds {criterion:g};"
+        f" {exponent_text} holds -1 and not 0.",
+        dean,
+        both,
+    )

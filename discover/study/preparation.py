@@ -1,0 +1,148 @@
+"""From a campaign to whitened rows: observe each record once, evaluate each column once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from joblib import Parallel, delayed
+
+from discover.library.dictionary import DELAY, PLAIN, Dictionary, standard_dictionary
+from discover.motion_fit import Observation, observe
+from discover.records import Campaign, Finding, Record
+from discover.regression.support import Support
+from discover.selection.structures import FRACTIONAL, POWER, candidate_supports
+from discover.selection.variants import settle_variants
+from discover.study.options import StudyOptions
+from discover.triangle import WindowRows, rows_of
+from models.checks import InputError
+from models.terms import find_term
+
+_ORDERS = (0.0, 2.0)
+_EXPONENTS = (0.4, 3.0)
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A campaign ready for the search."""
+
+    observations: tuple[Observation, ...]
+    """Of all records, in the campaign's order."""
+    fitted: tuple[WindowRows, ...]
+    """Windows of the records that may be fitted, one variant of each term."""
+    held_out: tuple[WindowRows, ...]
+    """Windows of the others."""
+    dictionary: Dictionary
+    """Of their columns."""
+    supports: tuple[Support, ...]
+    """What the search weighs."""
+    findings: tuple[Finding, ...]
+    """What observing found."""
+
+
+def observe_all(records: tuple[Record, ...], jobs: int) -> tuple[Observation, ...]:
+    """Return the observation of every record, over `jobs` threads of work."""
+    if jobs <= 1 or len(records) < 2:
+        return tuple(observe(r) for r in records)
+    return tuple(Parallel(n_jobs=jobs, prefer="threads")(delayed(observe)(r) for r in records))
+
+
+def _range(grid: tuple[float, ...] | None, default: tuple[float, float]) -> tuple[float, float]:
+    if grid is None:
+        return default
+    if len(grid) == 1:
+        return max(grid[0] - 1e-6, default[0]), grid[0] + 1e-6
+    return min(grid), max(grid)
+
+
+def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
+    """Return the campaign's observations and rows.
+
+    Raises
+    ------
+    InputError
+        Where no record may be fitted, or a term can't be searched for in a study.
+    """
+    if not campaign.fitted:
+        raise InputError(
+            "records", expected="at least one that is not held out", found="none",
+            where=campaign.source,
+        )
+    observations = observe_all(campaign.records, options.jobs)
+    windows = [w for o in observations if not o.held_out for w in o.windows]
+    terms = PLAIN if options.terms is None else _plain_terms(options.terms)
+    delay = options.terms is None or DELAY in options.terms
+    dictionary = standard_dictionary(
+        np.array([w.speed for w in windows]),
+        np.array([2.0 * np.pi * w.frequency for w in windows]),
+        terms=terms,
+        orders=_range(options.orders, _ORDERS),
+        exponents=_range(options.exponents, _EXPONENTS),
+        delay=delay,
+    )
+    rows = [rows_of(o, dictionary, i) for i, o in enumerate(observations)]
+    fitted = [w for o, r in zip(observations, rows, strict=True) if not o.held_out for w in r]
+    settled, small = settle_variants(fitted, dictionary)
+    kept = [dictionary.columns.index(c) for c in small.columns]
+    positions = [*kept, *range(len(dictionary.columns), dictionary.size + 1)]
+    held = [
+        _restricted(w, positions)
+        for o, r in zip(observations, rows, strict=True)
+        if o.held_out
+        for w in r
+    ]
+    if options.terms is None:
+        supports = tuple(candidate_supports(small))
+    else:
+        free = tuple(t for t in options.terms if t in (FRACTIONAL, POWER))
+        plain = tuple(t for t in options.terms if t not in free)
+        supports = (Support(plain, free),)
+    return Prepared(
+        observations, tuple(settled), tuple(held), small, supports, _findings(observations)
+    )
+
+
+def _restricted(window: WindowRows, positions: list[int]) -> WindowRows:
+    return replace(window, matrix=window.matrix[:, positions])
+
+
+def _plain_terms(terms: tuple[str, ...]) -> tuple[str, ...]:
+    result = []
+    for identifier in terms:
+        term = find_term(identifier, where="--terms")
+        if identifier in (FRACTIONAL, POWER, DELAY, "coulomb-friction"):
+            continue
+        if term.column is None or any(p.scaled_by for p in term.parameters):
+            raise InputError(
+                "term",
+                expected="one whose force is linear in its coefficient; the missing-effect"
+                " search handles the others",
+                found=identifier,
+                where="--terms",
+            )
+        result.append(identifier)
+    return tuple(result)
+
+
+def _findings(observations: tuple[Observation, ...]) -> tuple[Finding, ...]:
+    result = []
+    for o in observations:
+        if o.phase_fitted:
+            result.append(
+                Finding(
+                    "note",
+                    "has no displacement: the motion is a pure sine of the labelled frequency and"
+                    " amplitude, its phase fitted to the force.",
+                    o.file,
+                )
+            )
+        if o.cutoff is not None:
+            result.append(
+                Finding(
+                    "note",
+                    f"is a {o.kind} record; force and terms are compared up to {o.cutoff:.3g} Hz,"
+                    " where the displacement stands clear of its noise.",
+                    o.file,
+                )
+            )
+    return tuple(result)

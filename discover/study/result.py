@@ -1,0 +1,236 @@
+"""The study as a value, and as the documents ``study.json`` and ``model.json``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from discover._version import __version__
+from discover.dean import DeanCheck
+from discover.figure_data import StudyFigureData
+from discover.records import Finding
+from models.constitutive import FittedTerm, SegmentedModel
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class TermEstimate:
+    """A term of a band with its uncertainty."""
+
+    fitted: FittedTerm
+    """Coefficient and shape."""
+    std_error: float
+    """Of the coefficient."""
+    interval: Interval
+    """95 %, of the coefficient."""
+    shape_intervals: dict[str, Interval]
+    """95 %, of each fitted shape parameter."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        result = {
+            **self.fitted.to_dict(),
+            "std_error": self.std_error,
+            "interval": list(self.interval),
+        }
+        for name, interval in self.shape_intervals.items():
+            result[f"{name}_interval"] = list(interval)
+        return result
+
+
+@dataclass(frozen=True)
+class Nuisance:
+    """A sensor's artefact that matters."""
+
+    id: str
+    """Id in the vocabulary."""
+    value: float
+    """Best value."""
+    interval: Interval
+    """95 %."""
+    unit: str
+    """SI."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "id": self.id, "value": self.value, "interval": list(self.interval), "unit": self.unit
+        }
+
+
+@dataclass(frozen=True)
+class StudyBand:
+    """One band: what holds there, how surely, how well."""
+
+    lower: float | None
+    """Of the coordinate; None where open."""
+    upper: float | None
+    """Likewise."""
+    lower_hz: float
+    """Lowest frequency among its records."""
+    upper_hz: float
+    """Highest."""
+    records: tuple[str, ...]
+    """Files."""
+    family: str
+    """"fractional", "integer" or "mixed"."""
+    structure: str
+    """One of the named structures, or "other"."""
+    terms: tuple[TermEstimate, ...]
+    """Without nuisance."""
+    error_percent: float
+    """RMSE over the force's peak."""
+    relative_error_percent: float
+    """100 ||e||/||F||."""
+    noise_percent: float
+    """100 ||noise||/||F||."""
+    probability: float
+    """Of the structure."""
+    equivalents: tuple[tuple[str, float], ...]
+    """Structures that the data can't rule out, the named one first."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "lower": self.lower,
+            "upper": self.upper,
+            "lower_hz": self.lower_hz,
+            "upper_hz": self.upper_hz,
+            "records": list(self.records),
+            "family": self.family,
+            "structure": self.structure,
+            "terms": [t.to_dict() for t in self.terms],
+            "error_percent": self.error_percent,
+            "relative_error_percent": self.relative_error_percent,
+            "noise_percent": self.noise_percent,
+            "probability": self.probability,
+            "equivalents": [{"structure": s, "probability": p} for s, p in self.equivalents],
+        }
+
+
+@dataclass(frozen=True)
+class StudyBoundary:
+    """Where two bands meet."""
+
+    coordinate: float
+    """Of the study's coordinate."""
+    bracket: Interval
+    """Coordinate of the tests beside it."""
+    interval: Interval
+    """95 %."""
+    speed: float | None
+    """Speed amplitude, m/s; None where the coordinate is frequency."""
+    frequency_hz: float
+    """Middle frequency of the tests beside it."""
+    dean: float | None
+    """Dean number in the study's convention; None without geometry."""
+    dean_interval: Interval | None
+    """95 %."""
+    width: float | None = None
+    """Where gradual: the range of the coordinate's logarithm over which models mix."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        result: dict[str, Any] = {
+            "coordinate": self.coordinate,
+            "interval": list(self.interval),
+            "speed": self.speed,
+            "frequency_hz": self.frequency_hz,
+            "bracket": list(self.bracket),
+        }
+        if self.dean is not None and self.dean_interval is not None:
+            result["dean"] = self.dean
+            result["dean_interval"] = list(self.dean_interval)
+        if self.width is not None:
+            result["width"] = self.width
+        return result
+
+
+@dataclass(frozen=True)
+class NextTest:
+    """The test that would tell most."""
+
+    frequency_hz: float
+    """Hz."""
+    amplitude_m: float
+    """m."""
+    separates: tuple[str, str]
+    """What it would tell apart."""
+    gain: float
+    """Expected gain, nats."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "frequency_hz": self.frequency_hz,
+            "amplitude_m": self.amplitude_m,
+            "separates": list(self.separates),
+            "gain": self.gain,
+        }
+
+
+@dataclass(frozen=True)
+class Study:
+    """The answer of a study."""
+
+    title: str
+    """The campaign's."""
+    content_hash: str
+    """The campaign's."""
+    seed: int
+    """As asked."""
+    coordinate: str
+    """"dean", "speed" or "frequency"."""
+    relative_error_percent: float
+    """Pooled over the fitted records."""
+    held_out_relative_error_percent: float | None
+    """Pooled over the held-out records; None without any."""
+    identifiable: bool
+    """False where the data leave several structures in a band."""
+    findings: tuple[Finding, ...]
+    """In words."""
+    bands: tuple[StudyBand, ...]
+    """In rising coordinate."""
+    nuisance: tuple[Nuisance, ...]
+    """Where they matter."""
+    boundaries: tuple[StudyBoundary, ...]
+    """Between the bands."""
+    dean_check: DeanCheck
+    """Of the lowest boundary."""
+    next_test: NextTest | None
+    """None where nothing is left to tell."""
+    model: SegmentedModel
+    """Enough to simulate from."""
+    figure_data: StudyFigureData
+    """For pictures."""
+
+    def _header(self, name: str) -> dict[str, Any]:
+        return {
+            "schema": f"inerter.{name}/1",
+            "version": __version__,
+            "seed": self.seed,
+            "campaign": {"title": self.title, "hash": self.content_hash},
+        }
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document ``study.json``."""
+        result = {
+            **self._header("study"),
+            "coordinate": self.coordinate,
+            "relative_error_percent": self.relative_error_percent,
+            "identifiable": self.identifiable,
+            "findings": [f.to_dict() for f in self.findings],
+            "bands": [b.to_dict() for b in self.bands],
+            "nuisance": [n.to_dict() for n in self.nuisance],
+            "boundaries": [b.to_dict() for b in self.boundaries],
+            "dean_check": self.dean_check.to_dict(),
+            "next_test": None if self.next_test is None else self.next_test.to_dict(),
+        }
+        if self.held_out_relative_error_percent is not None:
+            result["held_out_relative_error_percent"] = self.held_out_relative_error_percent
+        return result
+
+    def model_dict(self) -> dict[str, Any]:
+        """Return the document ``model.json``."""
+        return {**self._header("model"), **self.model.to_dict()}
