@@ -40,11 +40,9 @@ def discover(
     one_of("convention", convention, ("paper", "standard"), where="--convention")
     if coordinate is not None:
         one_of("coordinate", coordinate, ("dean", "speed", "frequency"), where="--coordinate")
-    chosen = {
-        "terms": options.identifiers(terms, where="--terms"),
-        "orders": options.grid(orders, where="--orders"),
-        "exponents": options.grid(exponents, where="--exponents"),
-    }
+    only = options.identifiers(terms, where="--terms")
+    order_grid = options.grid(orders, where="--orders")
+    exponent_grid = options.grid(exponents, where="--exponents")
     source = shipped_campaign() if campaign is None else campaign
     folder = result_folder("discover", source, out)
 
@@ -62,7 +60,9 @@ def discover(
         study = run_study(
             measured,
             StudyOptions(
-                **chosen,
+                terms=only,
+                orders=order_grid,
+                exponents=exponent_grid,
                 bands=bands,
                 coordinate=coordinate,
                 convention=convention,

@@ -129,7 +129,9 @@ def next_line(document: Mapping[str, Any]) -> str:
     """Say which test to run next, or that none is needed."""
     test = document.get("next_test")
     if not test or test.get("frequency_hz") is None:
-        return "Next test: none proposed; no pair of structures is left to tell apart."
+        if document.get("identifiable", True):
+            return "Next test: none needed; no pair of structures is left to tell apart."
+        return "Next test: none proposed."
     amplitude = significant(1e3 * test["amplitude_m"], 3)
     separates = listed([str(s) for s in test.get("separates", ())], last="from")
     return (
