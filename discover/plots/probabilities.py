@@ -15,6 +15,8 @@ from discover.plots.style import (
     to_svg,
 )
 
+_VISIBLE = 0.004  # of the bar's length: about two pixels
+
 
 def probability_bars(document: Mapping[str, Any], data: StudyFigureData) -> str | None:
     """Draw one stacked bar a band, or return None where nothing was weighed.
@@ -38,6 +40,7 @@ def probability_bars(document: Mapping[str, Any], data: StudyFigureData) -> str 
         for band, parts in enumerate(weighed):
             left = 0.0
             for structure, probability in parts:
+                visible = probability >= _VISIBLE
                 colour = STRUCTURE_COLOURS.get(structure, STRUCTURE_COLOURS["other"])
                 axes.barh(
                     band,
@@ -47,11 +50,12 @@ def probability_bars(document: Mapping[str, Any], data: StudyFigureData) -> str 
                     color=colour,
                     edgecolor="white",
                     linewidth=1.0,
-                    label=structure if structure not in labelled else None,
+                    label=structure if structure not in labelled and visible else None,
                 )
-                labelled.add(structure)
+                if visible:
+                    labelled.add(structure)
                 if probability > 0.09:
-                    text = f"{100.0 * probability:.0f} %"
+                    text = "> 99 %" if probability > 0.995 else f"{100.0 * probability:.0f} %"
                     middle = left + probability / 2.0
                     axes.text(
                         middle,

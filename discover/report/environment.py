@@ -28,6 +28,17 @@ def unit(text: str) -> Markup:
     return Markup(re.sub(r"\^([-\d.]+)", r"<sup>\1</sup>", plain))
 
 
+def prose(text: str) -> Markup:
+    """Return text with what stands between backticks as code, as HTML.
+
+    Examples
+    --------
+    >>> str(prose("run `inerter gap <x>`"))
+    'run <code>inerter gap &lt;x&gt;</code>'
+    """
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+
+
 def shape(term: Mapping[str, Any]) -> str:
     """Return a term's shape parameters with their intervals.
 
@@ -65,6 +76,7 @@ def environment() -> jinja2.Environment:
         counted=words.counted,
         band_range=words.band_range,
         not_ruled_out=not_ruled_out,
+        prose=prose,
         unit=unit,
         shape=shape,
     )
