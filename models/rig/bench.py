@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +13,6 @@ from models.checks import Array
 from models.device import Device
 from models.rig.drive import Drive
 from models.rig.physics import FlowLaw, fluid_force, seal_force
-from models.rig.stepping import transmitted_force
 
 
 @dataclass(frozen=True)
@@ -87,15 +86,19 @@ class Bench:
         return self.drive.sample(self.grid_force)
 
     @cached_property
-    def stepped_force(self) -> Array:
-        """(G,) force that a part in the load path is judged against, N.
+    def stiff(self) -> FlowLaw:
+        """The device with stiff oil: what parts in the load path are simulated with."""
+        return replace(self.law, physics=replace(self.law.physics, compressibility=False))
 
-        The same as `grid_force` for stiff oil. Where oil yields, the force by time stepping with
-        the oil alone, as the seals are then on the other side of the spring.
-        """
-        if not self.law.physics.compressibility:
-            return self.grid_force
-        return transmitted_force(self.law, self.drive, None)
+    @cached_property
+    def stiff_fluid(self) -> Array:
+        """(G,) the fluid's force with stiff oil, N."""
+        return fluid_force(self.stiff, self.drive)
+
+    @cached_property
+    def seals(self) -> Array:
+        """(G,) the seals' friction, N."""
+        return seal_force(self.law, self.drive)
 
 
 def make_bench(law: FlowLaw, drive: Drive, *, index: int) -> Bench:

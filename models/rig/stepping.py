@@ -8,7 +8,7 @@ is the force that a load cell sees.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numba import njit
@@ -35,24 +35,28 @@ class Element:
     damping: float = 0.0
     """Parallel damping where the element's slope is at its greatest, N s/m."""
 
-    @property
-    def stiffness(self) -> float:
-        """Greatest slope, N/m."""
-        return float(np.max(np.diff(self.force) / np.diff(self.extension)))
+    refill_time: float = 0.0
+    """Time in which oil fills a void, s; 0 for an element that no oil flows into."""
+    refill_below: float = 0.0
+    """Extension under which there is a void, m."""
 
 
-def transmitted_force(law: FlowLaw, drive: Drive, element: Element | None) -> Array:
+def transmitted_force(
+    law: FlowLaw, drive: Drive, element: Element, *, seal_behind: bool = True
+) -> Array:
     """Return the force (G,) that the element transmits, on the drive's grid, N.
 
     Parameters
     ----------
     law : FlowLaw
-        The device.
+        The device; its oil is taken as stiff.
     drive : Drive
         The actuator's motion.
-    element : Element or None
-        What is between them; where the oil yields, its columns do so in series. None for the oil
-        alone.
+    element : Element
+        What is between them.
+    seal_behind : bool
+        True where the seals rub behind the element (a joint, a mount), False where they rub before
+        it and the element carries the fluid's force alone (a chamber of oil).
 
     Notes
     -----
@@ -65,13 +69,13 @@ def transmitted_force(law: FlowLaw, drive: Drive, element: Element | None) -> Ar
     if law.physics.wall:
         modes = wall_modes(law.device, count=_MODES)
         rates, gain, inertance = modes.rates, modes.gain, inertance + modes.remainder
-    line, load, damping = _in_series(law, element)
+    line, load = element.extension, element.force
     slopes = np.diff(load) / np.diff(line)
     stiffness = float(slopes.max())
     resonance = math.sqrt(stiffness / inertance)
     substeps = max(1, math.ceil(resonance * drive.step / _STEP_ANGLE))
     passes = min(40, 1 + math.ceil(_SETTLE / drive.window)) if drive.periodic else 1
-    seal = law.seal
+    seal = law.seal if seal_behind else replace(law.seal, sliding=0.0)
     return np.asarray(
         _march(
             drive.position,
@@ -82,8 +86,10 @@ def transmitted_force(law: FlowLaw, drive: Drive, element: Element | None) -> Ar
             inertance,
             np.concatenate([[line[0] - 1.0], line, [line[-1] + 1.0]]),
             np.concatenate([[load[0] - slopes[0]], load, [load[-1] + slopes[-1]]]),
-            damping,
+            element.damping,
             stiffness,
+            element.refill_time,
+            element.refill_below,
             law.table,
             law.top,
             law.physics.seal == "dynamic",
@@ -92,17 +98,6 @@ def transmitted_force(law: FlowLaw, drive: Drive, element: Element | None) -> Ar
             gain,
         )
     )
-
-
-def _in_series(law: FlowLaw, element: Element | None) -> tuple[Array, Array, float]:
-    """Return extension, load and damping of the element with the oil in series."""
-    if element is None:
-        load = np.array([-1.0, 1.0])
-        return load / law.oil_stiffness, load, 0.0
-    line, load = element.extension, element.force
-    if law.physics.compressibility:
-        line = line + load / law.oil_stiffness
-    return line, load, element.damping
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
@@ -157,6 +152,20 @@ def _friction(
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
+def _between(
+    y0: float, y1: float, v0: float, v1: float, step: float, s: float
+) -> tuple[float, float]:
+    """Return position and velocity at the share s of a step, by Hermite's cubic.
+
+    A stiff element needs both to agree: linear interpolation would load it with its own error.
+    """
+    rise = (y1 - y0) / step
+    curve, twist = 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise
+    y = y0 + step * s * (v0 + s * (curve + s * twist))
+    return y, v0 + s * (2.0 * curve + 3.0 * s * twist)
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
 def _march(
     position: Array,
     velocity: Array,
@@ -168,6 +177,8 @@ def _march(
     f: Array,
     d: float,
     k: float,
+    refill: float,
+    edge: float,
     table: Array,
     top: float,
     dynamic: bool,  # noqa: FBT001 - numba has no keyword-only arguments
@@ -188,6 +199,7 @@ def _march(
     lag = gain * (count - last.sum())
     memory = np.full(count, velocity[0])
     result = np.empty(size)
+    filling = -math.expm1(-dt / refill) if refill > 0.0 else 0.0
     u, w, z = position[0], velocity[0], 0.0
     force, _, _ = _element(0.0, 0.0, x, f, d, k)
     net = force - _drag(w, table, top)[0] - _friction(w, 0.0, z, dynamic, seal)[0]
@@ -199,8 +211,9 @@ def _march(
                 break
             for j in range(substeps):
                 s = (j + 1.0) / substeps
-                y = position[i] + s * (position[following] - position[i])
-                dy = velocity[i] + s * (velocity[following] - velocity[i])
+                y, dy = _between(
+                    position[i], position[following], velocity[i], velocity[following], step, s
+                )
                 past = 0.0
                 for m in range(count):
                     past += gain * (decay[m] * memory[m] + first[m] * w)
@@ -228,5 +241,7 @@ def _march(
                 for m in range(count):
                     memory[m] = decay[m] * memory[m] + first[m] * w + last[m] * new
                 u += dt * (_THETA * new + (1.0 - _THETA) * w)
+                # What flows in makes up the void: the device's end counts as that much further.
+                u += filling * min(y - u - edge, 0.0)
                 w, z, net = new, z_new, net_new
     return result

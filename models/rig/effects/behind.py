@@ -1,4 +1,8 @@
-"""Parts in the load path whose dynamics have to be simulated: mounts, play, tearing oil."""
+"""Parts in the load path whose dynamics have to be simulated: mounts, play, tearing oil.
+
+Each changes the force by what it changes for a device whose oil is stiff: the oil's own yield, of a
+few per cent, and the part's are superposed.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +20,15 @@ _WIDE = 1.0
 
 
 def _through(bench: Bench, element: Element) -> Array:
-    force = transmitted_force(bench.law, bench.drive, element)
-    return bench.drive.sample(np.asarray(force - bench.stepped_force))
+    """Return the change where the whole device, seals included, is behind the element."""
+    force = transmitted_force(bench.stiff, bench.drive, element)
+    return bench.drive.sample(np.asarray(force - bench.stiff_fluid - bench.seals))
+
+
+def _inside(bench: Bench, element: Element) -> Array:
+    """Return the change where only the fluid's force goes through the element."""
+    force = transmitted_force(bench.stiff, bench.drive, element, seal_behind=False)
+    return bench.drive.sample(np.asarray(force - bench.stiff_fluid))
 
 
 def _contact(bench: Bench, values: Values) -> tuple[float, float]:
@@ -45,7 +56,7 @@ def _aired(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     soft = values["air"] * full * np.arctan(loads / full * 4.0) / 4.0
     line = amount * (loads + soft) / (1.0 + values["air"])
     damping = values["loss"] / amount / values["omega"]
-    return _through(bench, Element(np.asarray(line), loads, damping))
+    return _inside(bench, Element(np.asarray(line), loads, damping))
 
 
 def _draw_aired(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -54,7 +65,7 @@ def _draw_aired(rng: Generator, scales: Scales) -> dict[str, float]:
 
 def _start_compliance(scales: Scales) -> float:
     # Yields a hundredth of the stroke that the greatest force belongs to.
-    return 0.01 * scales.speed**2 / scales.acceleration / scales.force
+    return 0.05 * scales.speed**2 / scales.acceleration / scales.force
 
 
 def _play(bench: Bench, force: Array, amount: float, values: Values) -> Array:
@@ -79,14 +90,14 @@ def _bushing(bench: Bench, force: Array, amount: float, values: Values) -> Array
         )
         / sharp
     )
-    load = stiffness * (0.98 * play + 0.02 * line)
+    load = stiffness * (0.99 * play + 0.01 * line)
     return _through(bench, Element(np.asarray(line), np.asarray(load), damping))
 
 
 def _draw_contact(rng: Generator, scales: Scales) -> dict[str, float]:
     return {
-        "contact_frequency": scales.high_frequency * rng.uniform(15.0, 20.0),
-        "contact_damping": rng.uniform(0.25, 0.4),
+        "contact_frequency": scales.high_frequency * rng.uniform(25.0, 30.0),
+        "contact_damping": rng.uniform(0.5, 0.7),
     }
 
 
@@ -94,14 +105,19 @@ def _start_play(scales: Scales) -> float:
     return 0.01 * scales.displacement
 
 
-def _vapour(bench: Bench, force: Array, amount: float, values: Values) -> Array:
-    # One chamber tears at its vapour pressure: the void opens at constant force and must be
-    # closed again before the force returns.
+def _make_up(bench: Bench, force: Array, amount: float, values: Values) -> Array:
+    # One chamber tears at its vapour pressure: the void opens at constant force while a make-up
+    # valve lets oil in, and what is left of it must close before the force returns.
     stiffness, damping = _contact(bench, values)
-    limit = 1.0 / amount
-    line = np.array([-limit / stiffness - _WIDE, -limit / stiffness, _WIDE])
-    load = np.array([-limit - 1e-9 * stiffness * _WIDE, -limit, stiffness * _WIDE])
-    return _through(bench, Element(line, load, damping))
+    edge = -1.0 / (amount * stiffness)
+    line = np.array([edge - _WIDE, edge, _WIDE])
+    load = stiffness * np.array([edge - 1e-9 * _WIDE, edge, _WIDE])
+    return _inside(bench, Element(line, load, damping, values["refill_time"], edge))
+
+
+def _draw_make_up(rng: Generator, scales: Scales) -> dict[str, float]:
+    refill = rng.uniform(0.02, 0.05) / scales.high_frequency
+    return _draw_contact(rng, scales) | {"refill_time": refill}
 
 
 def _degassing(bench: Bench, force: Array, amount: float, values: Values) -> Array:
@@ -165,10 +181,10 @@ EFFECTS = (
     ),
     Effect(
         "cavitation",
-        "vapour",
-        "one chamber tears at a limit, its void must close before force returns; in time",
-        _vapour,
-        _draw_contact,
+        "make-up",
+        "one chamber tears at a limit while a make-up valve fills its void; in time",
+        _make_up,
+        _draw_make_up,
         linear=False,
         acts="input",
         start=lambda scales: 1.5 / scales.force,
