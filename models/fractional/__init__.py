@@ -1,14 +1,17 @@
 """Fractional operators for records: from the first sample on, in steady state, band-limited."""
 
 from models.fractional.band_limit import band_limited_derivative, low_pass, noise_cutoff
-from models.fractional.dispatch import derivative
+from models.fractional.dispatch import derivative, fractional_derivative
 from models.fractional.exponential_sum import exponential_sum
+from models.fractional.result import FractionalDerivative
 from models.fractional.spectral import harmonic_factors, spectral_derivative
 
 __all__ = [
+    "FractionalDerivative",
     "band_limited_derivative",
     "derivative",
     "exponential_sum",
+    "fractional_derivative",
     "harmonic_factors",
     "low_pass",
     "noise_cutoff",

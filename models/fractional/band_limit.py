@@ -12,10 +12,8 @@ from scipy.signal.windows import kaiser
 
 from models.checks import number
 from models.fractional.orders import Array, checked_orders, checked_record
-from models.fractional.spectral import harmonic_factors
+from models.fractional.spectral import TRANSITION, harmonic_factors, low_pass_gain
 
-TRANSITION = 2.0
-"""The filter passes everything up to the cut-off and nothing above twice that."""
 # Lengths at each end, in periods of the cut-off: fitted, and added beyond the record.
 _FITTED = 4.0
 _ADDED = 5.0
@@ -64,7 +62,8 @@ def band_limited_derivative(
     r"""Differentiate records of any shape below a cut-off frequency.
 
     Each end is continued by the band-limited motion that fits it best (regularised least
-    squares) and fades to the record's mean; then the spectrum is multiplied by
+    squares) and fades to the level
+    of its first few cycles; then the spectrum is multiplied by
     :math:`(i\omega)^\alpha` and a smooth low-pass. So nothing wraps round and no phase is lost.
 
     Parameters
@@ -83,9 +82,9 @@ def band_limited_derivative(
     Returns
     -------
     ndarray, shape (K, ..., N)
-        The derivative from minus infinity (Weyl) of a motion that was at the record's mean
-        before its start. Within about 1/cutoff (s) of the ends it rests on the extension;
-        orders below 1 remember the unknown past for longer.
+        The derivative from minus infinity (Weyl) of a motion that rested at the level of
+        its first few cycles before its start. Within about 1/cutoff (s) of the ends the result
+        rests on the extension; orders below 1 remember the unknown past for longer.
 
     Raises
     ------
@@ -106,38 +105,26 @@ def band_limited_derivative(
     ratio = number("edge_noise", edge_noise, above=0.0)
     samples = values.shape[-1]
     rows = values.reshape(-1, samples)
-    mean = rows.mean(axis=1, keepdims=True)
-    centred = rows - mean
     added = max(int(math.ceil(_ADDED / (limit * step))), 4)
     fitted = min(samples, max(int(math.ceil(_FITTED / (limit * step))), 8))
+    # Before the record, and far behind it, the motion rests at the level of its start.
+    level = rows[:, :fitted].mean(axis=1, keepdims=True)
+    centred = rows - level
     after = _continuation(fitted, added, limit * step, ratio)
     length = int(scipy.fft.next_fast_len(2 * samples + 2 * added, real=True))
     extended = np.zeros((rows.shape[0], length))
     extended[:, :samples] = centred
     extended[:, samples : samples + added] = _continue(centred[:, samples - fitted :], after)
-    before = _continue(centred[:, fitted - 1 :: -1] if fitted < samples else centred[:, ::-1], after)
-    extended[:, length - added :] = before[:, ::-1]
+    extended[:, length - added :] = _continue(centred[:, :fitted][:, ::-1], after)[:, ::-1]
     frequency = scipy.fft.rfftfreq(length, step)
-    factors = harmonic_factors(alpha, 2.0 * np.pi * frequency) * response(frequency, limit)
+    factors = harmonic_factors(alpha, 2.0 * np.pi * frequency) * low_pass_gain(frequency, limit)
     spectrum = scipy.fft.rfft(extended, axis=-1)
     out = np.empty((alpha.size, *rows.shape))
     for k in range(alpha.size):
         out[k] = scipy.fft.irfft(factors[k] * spectrum, n=length, axis=-1)[:, :samples]
         if alpha[k] == 0.0:
-            out[k] += mean
+            out[k] += level
     return out.reshape(alpha.size, *values.shape)
-
-
-def response(frequency: Array, cutoff: float) -> Array:
-    """Return the low-pass's real gain: 1 up to the cut-off, then a smooth step down to 0.
-
-    Examples
-    --------
-    >>> response(np.array([1.0, 3.0, 4.0]), 2.0).round(12)
-    array([1. , 0.5, 0. ])
-    """
-    s = np.clip((frequency / cutoff - 1.0) / (TRANSITION - 1.0), 0.0, 1.0)
-    return np.asarray(1.0 - s**4 * (35.0 - 84.0 * s + 70.0 * s**2 - 20.0 * s**3))
 
 
 @functools.lru_cache(maxsize=32)
@@ -152,8 +139,8 @@ def _continuation(
     period = fitted + 2.0 * added
     count = int(math.floor(TRANSITION * band * period))
     frequency = np.arange(1, count + 1) / period
-    prior = np.concatenate([[1.0], *(2 * [np.sqrt(response(frequency, band)) * math.sqrt(2.0)])])
-    prior = np.maximum(prior, 1e-6)
+    shape = np.maximum(np.sqrt(2.0 * low_pass_gain(frequency, band)), 1e-6)
+    prior = np.concatenate([[1.0], shape, shape])
 
     def features(n: Array) -> Array:
         angle = 2.0 * np.pi * n[:, None] * frequency
@@ -165,7 +152,7 @@ def _continuation(
     ridge = ratio * math.sqrt(float(prior @ prior))
     left, values, right = np.linalg.svd(inside, full_matrices=False)
     projector = (right.T * (values / (values**2 + ridge**2))) @ left.T
-    fade = response(np.arange(1.0, added + 1.0), 0.5 * added)
+    fade = low_pass_gain(np.arange(1.0, added + 1.0), 0.5 * added)
     return projector, outside * fade[:, None]
 
 

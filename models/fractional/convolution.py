@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
@@ -177,16 +178,18 @@ def convolve(
     out = np.empty((len(spectra), records, samples))
     transformed = scipy.fft.rfft(sources, n=length, axis=-1)
 
-    def work(block: list[tuple[int, int]]) -> None:
-        product = np.empty((len(block), length // 2 + 1), dtype=np.complex128)
-        for row, (k, r) in zip(product, block, strict=True):
-            np.multiply(spectra[k], transformed[choice[k], r], out=row)
-        values = scipy.fft.irfft(product, n=length, axis=-1, overwrite_x=True, workers=1)
-        for row, (k, r) in zip(values, block, strict=True):
-            np.multiply(row[:samples], scales[k], out=out[k, r])
+    def work(share: list[tuple[int, int]]) -> None:
+        product = np.empty((_ROWS, length // 2 + 1), dtype=np.complex128)
+        for block in _blocks(share, _ROWS):
+            for row, (k, r) in zip(product, block, strict=False):
+                np.multiply(spectra[k], transformed[choice[k], r], out=row)
+            values = scipy.fft.irfft(product[: len(block)], n=length, axis=-1, workers=1)
+            for row, (k, r) in zip(values, block, strict=True):
+                np.multiply(row[:samples], scales[k], out=out[k, r])
 
     jobs = [(k, r) for k in range(len(spectra)) for r in range(records)]
-    map_threads(work, _blocks(jobs, _ROWS))
+    shares = max(1, min(int(scipy.fft.get_workers()), len(jobs) // _ROWS))
+    map_threads(work, _blocks(jobs, math.ceil(len(jobs) / shares)))
     return out
 
 

@@ -154,4 +154,5 @@ def _gauss_rule(weights: Array, nodes: Array, error: float) -> tuple[Array, Arra
             off_diagonal[k] = np.linalg.norm(image)
             basis[k + 1] = image / off_diagonal[k]
     values, vectors = eigh_tridiagonal(diagonal, off_diagonal)
-    return total * vectors[0] ** 2, np.clip(values, 0.0, None) * scale
+    merged: Array = np.clip(np.asarray(values, dtype=np.float64), 0.0, None) * scale
+    return total * np.asarray(vectors[0], dtype=np.float64) ** 2, merged

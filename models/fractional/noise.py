@@ -73,4 +73,4 @@ def _blocks(x: Array) -> Array:
         return x[None, :]
     count = min(_BLOCKS, x.size // _BLOCK_SAMPLES)
     starts = np.linspace(0, x.size - _BLOCK_SAMPLES, count).astype(np.intp)
-    return x[starts[:, None] + np.arange(_BLOCK_SAMPLES)]
+    return np.asarray(x[starts[:, None] + np.arange(_BLOCK_SAMPLES)])

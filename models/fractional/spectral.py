@@ -6,8 +6,11 @@ import numpy as np
 import scipy.fft
 from numpy.typing import ArrayLike, NDArray
 
-from models.checks import finite_array
+from models.checks import finite_array, number
 from models.fractional.orders import Array, checked_orders, checked_record
+
+TRANSITION = 2.0
+"""The low-pass ends at this many times its cut-off."""
 
 
 def harmonic_factors(orders: ArrayLike, omegas: ArrayLike) -> NDArray[np.complex128]:
@@ -58,7 +61,9 @@ def harmonic_factors(orders: ArrayLike, omegas: ArrayLike) -> NDArray[np.complex
     return np.asarray(np.where(moving, factors, at_rest), dtype=np.complex128)
 
 
-def spectral_derivative(x: ArrayLike, orders: ArrayLike, dt: float) -> Array:
+def spectral_derivative(
+    x: ArrayLike, orders: ArrayLike, dt: float, *, cutoff: float | None = None
+) -> Array:
     """Differentiate records that hold whole periods, in steady state (Weyl).
 
     Exact to rounding for motion that is periodic over the record and sampled above twice its
@@ -72,6 +77,8 @@ def spectral_derivative(x: ArrayLike, orders: ArrayLike, dt: float) -> Array:
         Orders, -1 to 2.
     dt : float
         Sampling interval, s.
+    cutoff : float, optional
+        Hz: low-pass that passes everything up to here and nothing above twice that.
 
     Returns
     -------
@@ -95,12 +102,26 @@ def spectral_derivative(x: ArrayLike, orders: ArrayLike, dt: float) -> Array:
     values, step = checked_record(x, dt)
     alpha, _ = checked_orders(orders)
     n = values.shape[-1]
-    omega = 2.0 * np.pi * scipy.fft.rfftfreq(n, step)
-    factors = harmonic_factors(alpha, omega)
+    frequency = scipy.fft.rfftfreq(n, step)
+    factors = harmonic_factors(alpha, 2.0 * np.pi * frequency)
+    if cutoff is not None:
+        factors *= low_pass_gain(frequency, number("cutoff", cutoff, above=0.0))
     if n % 2 == 0:
         # The sample at the Nyquist frequency is the mean of +omega and -omega: the real part.
         factors[:, -1] = factors[:, -1].real
     spectrum = scipy.fft.rfft(values, axis=-1)
-    shape = (alpha.size,) + (1,) * (values.ndim - 1) + (omega.size,)
+    shape = (alpha.size,) + (1,) * (values.ndim - 1) + (frequency.size,)
     rows = factors.reshape(shape) * spectrum
     return np.asarray(scipy.fft.irfft(rows, n=n, axis=-1), dtype=np.float64)
+
+
+def low_pass_gain(frequency: Array, cutoff: float) -> Array:
+    """Return the real gain of the low-pass: 1 up to the cut-off, smoothly to 0 at twice that.
+
+    Examples
+    --------
+    >>> low_pass_gain(np.array([1.0, 3.0, 4.0]), 2.0).round(12)
+    array([1. , 0.5, 0. ])
+    """
+    s = np.clip((frequency / cutoff - 1.0) / (TRANSITION - 1.0), 0.0, 1.0)
+    return np.asarray(1.0 - s**4 * (35.0 - 84.0 * s + 70.0 * s**2 - 20.0 * s**3))

@@ -6,6 +6,7 @@ import functools
 
 import numpy as np
 from numpy.polynomial import legendre
+from numpy.typing import NDArray
 
 from models.fractional.orders import Array
 
@@ -74,7 +75,7 @@ def _widths(limit: int) -> list[int]:
 
 
 @functools.lru_cache(maxsize=64)
-def _fit(width: int) -> tuple[Array, Array, Array, Array]:
+def _fit(width: int) -> tuple[NDArray[np.intp], Array, Array, Array]:
     """Nodes, projector on Legendre modes, the modes at the nodes, and modes to monomials in n."""
     nodes = np.unique(np.linspace(0, width - 1, min(width, _NODES)).astype(np.intp))
     degree = min(DEGREE, max((nodes.size - 1) // 2, 0)) if nodes.size > 2 else nodes.size - 1

@@ -39,13 +39,11 @@ def difference_polynomial(p: int) -> tuple[Fraction, ...]:
 @functools.cache
 def _difference_series(p: int) -> tuple[float, ...]:
     """Coefficients of delta(e^-z)/z in powers of z: 1, then zeros up to z^(p-1)."""
-    polynomial = difference_polynomial(p)
-    return tuple(
-        float(
-            sum(c * Fraction((-k) ** (j + 1), math.factorial(j + 1)) for k, c in enumerate(polynomial))
-        )
-        for j in range(_TERMS)
-    )
+    series = []
+    for j in range(_TERMS):
+        moment = sum(c * (-k) ** (j + 1) for k, c in enumerate(difference_polynomial(p)))
+        series.append(float(Fraction(moment) / math.factorial(j + 1)))
+    return tuple(series)
 
 
 def symbol_series(orders: Array, p: int) -> Array:

@@ -1,0 +1,185 @@
+"""The scheme that suits a record: by its noise, its smoothness and whether it repeats."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.fractional.band_limit import noise_cutoff
+from models.fractional.harmonics import HarmonicFit, fit_harmonics
+from models.fractional.noise import Roughness, roughness
+from models.fractional.orders import Array
+from models.fractional.spectral import TRANSITION
+from models.fractional.weights import BDF_STEPS, convolution_weights, symbol_series
+
+# Expected relative errors above which a fit of harmonics, or a low-pass, is tried instead.
+_FIT_ABOVE = 1e-5
+_FILTER_ABOVE = 3e-3
+# A fit explains a record where it leaves no more than this times the noise.
+_EXPLAINED = 1.25
+_NORM_WEIGHTS = 64
+_JUNCTION = 6
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A scheme and what it needs."""
+
+    scheme: str
+    """"bdf2" to "bdf6", "spectral", "harmonics" or "band-limited"."""
+    cutoff: float | None = None
+    """Hz, where there is a low-pass."""
+    fits: tuple[HarmonicFit, ...] = ()
+    """One for each record, for "harmonics"."""
+
+
+def expected_noise(measured: Roughness, orders: Array, p: int) -> Array:
+    """Relative rms error, (K,), that noise makes in a BDF scheme of `p` steps.
+
+    Examples
+    --------
+    >>> t = np.arange(2000) / 1000
+    >>> noise = 1e-4 * np.random.default_rng(0).standard_normal(t.size)
+    >>> measured = roughness(np.sin(30 * t) + noise)
+    >>> bool(expected_noise(measured, np.array([1.9]), 1)[0] > 0.1)
+    True
+    """
+    weights = convolution_weights(orders, _NORM_WEIGHTS, p)
+    return np.asarray(
+        measured.noise * np.linalg.norm(weights, axis=1) / _scaled_size(measured, orders)
+    )
+
+
+def expected_truncation(measured: Roughness, orders: Array, p: int) -> Array:
+    """Relative rms error, (K,), that a BDF scheme of `p` steps makes on a smooth record.
+
+    Examples
+    --------
+    >>> measured = roughness(np.sin(0.03 * np.arange(2000)))
+    >>> bool(0.01 < expected_truncation(measured, np.array([1.5]), 1)[0] < 0.05)
+    True
+    """
+    ratio = measured.differences[p - 1] / max(measured.size, 1e-300)
+    return np.asarray(np.abs(symbol_series(orders, p)[:, p]) * ratio)
+
+
+def _scaled_size(measured: Roughness, orders: Array) -> Array:
+    """Size of the derivative times dt^order, (K,), as if the record had one frequency."""
+    size = max(measured.size, 1e-300)
+    turn = max(measured.differences[0] / size, 1e-300)
+    return np.asarray(np.maximum(size * turn**orders, 1e-300))
+
+
+def choose_causal(rows: Array, orders: Array, dt: float) -> Choice:
+    """Choose for a derivative from the first sample on.
+
+    The number of steps balances truncation against noise, as both are seen in the record.
+    Where noise spoils them all, a record of few harmonics is replaced by their fit, any other
+    one low-passed.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (R, N)
+    orders : ndarray, shape (K,)
+    dt : float
+
+    Returns
+    -------
+    Choice
+
+    Examples
+    --------
+    >>> x = np.sin(0.001 * np.arange(20000) ** 1.2)
+    >>> choose_causal(x[None], np.array([0.5]), 1.0).scheme in BDF_STEPS
+    True
+    """
+    measured = [roughness(row) for row in rows]
+    names = [name for name in BDF_STEPS if name != "gl"]
+    errors = [
+        max(
+            float(np.max(np.hypot(
+                expected_noise(m, orders, BDF_STEPS[name]),
+                expected_truncation(m, orders, BDF_STEPS[name]),
+            )))
+            for m in measured
+        )
+        for name in names
+    ]
+    least = int(np.argmin(errors))
+    best = Choice(names[least])
+    if errors[least] <= _FIT_ABOVE or rows.shape[1] < 32:
+        return best
+    fits = _explaining_fits(rows, measured)
+    if fits:
+        return Choice("harmonics", fits=fits)
+    if errors[least] <= _FILTER_ABOVE:
+        return best
+    cutoff = noise_cutoff(rows, dt, float(orders.max()))
+    return Choice("band-limited", cutoff) if TRANSITION * cutoff * dt < 0.5 else best
+
+
+def choose_steady(rows: Array, orders: Array, dt: float) -> Choice:
+    """Choose for a derivative from minus infinity.
+
+    Clean whole periods are differentiated by their spectrum, records of few harmonics by their
+    fit, and anything else below a cut-off.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (R, N)
+    orders : ndarray, shape (K,)
+    dt : float
+
+    Returns
+    -------
+    Choice
+
+    Examples
+    --------
+    >>> x = np.sin(2 * np.pi * np.arange(250) / 100)
+    >>> choose_steady(x[None], np.array([0.5]), 0.01).scheme
+    'harmonics'
+    """
+    measured = [roughness(row) for row in rows]
+    noisy = any(m.noise > 1e-9 * m.size for m in measured)
+    periodic = all(_closes(row) for row in rows)
+    if periodic and not noisy:
+        return Choice("spectral")
+    fits = _explaining_fits(rows, measured)
+    if fits:
+        return Choice("harmonics", fits=fits)
+    if rows.shape[1] < 16:
+        return Choice("spectral")
+    cutoff = noise_cutoff(rows, dt, float(orders.max()))
+    return Choice("spectral" if periodic else "band-limited", cutoff)
+
+
+def _explaining_fits(rows: Array, measured: list[Roughness]) -> tuple[HarmonicFit, ...]:
+    """Return fits of harmonics if they leave nothing but noise in every record, else nothing."""
+    fits = []
+    for row, m in zip(rows, measured, strict=True):
+        fit = fit_harmonics(row)
+        # Phase accumulates rounding in proportion to the length.
+        rounding = 1e-15 * row.size * m.size
+        if fit is None or fit.residual > max(_EXPLAINED * m.noise, min(rounding, 1e-9 * m.size)):
+            return ()
+        fits.append(fit)
+    return tuple(fits)
+
+
+def _closes(x: Array) -> bool:
+    """Whether the record goes on from its end to its start as smoothly as it runs inside."""
+    if x.size < 4 * _JUNCTION:
+        return True
+    joined = np.concatenate([x[-2 * _JUNCTION :], x[: 2 * _JUNCTION]])
+    inside, across = x, joined
+    for d in range(1, _JUNCTION + 1):
+        inside, across = np.diff(inside), np.diff(across)
+        # Differences of order d that take samples from both sides of the junction.
+        middle = across[2 * _JUNCTION - d : 2 * _JUNCTION]
+        rounding = math.comb(2 * d, d) ** 0.5 * 4e-16 * float(np.max(np.abs(x)))
+        if np.max(np.abs(middle)) > 1.5 * np.max(np.abs(inside)) + 4.0 * rounding:
+            return False
+    return True
