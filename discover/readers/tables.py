@@ -1,0 +1,175 @@
+"""The tables of ``campaign.toml``, checked and in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from discover.readers.columns import QUANTITIES, nearest
+from discover.readers.record import Entry
+from discover.readers.units import check_unit, quantity
+from discover.records import CarriedSystem, RigLimits
+from models.checks import InputError, number, one_of
+from models.device import Device
+
+_FILE = "campaign.toml"
+_DEVICE = {
+    "rod_radius": "length",
+    "cylinder_radius": "length",
+    "channel_radius": "length",
+    "helix_radius": "length",
+    "helix_pitch": "length",
+    "transition_length": "length",
+    "piston_clearance": "length",
+    "inertance": "mass",
+    "coulomb_friction": "force",
+}
+_FLUID = {"density": "density", "viscosity": "dynamic viscosity"}
+_RIG = {
+    "max_stroke": "length",
+    "max_speed": "speed",
+    "max_acceleration": "acceleration",
+    "max_force": "force",
+}
+_SYSTEM = {"mass": "mass", "stiffness": "stiffness"}
+
+
+def _table(value: object, keys: Iterable[str], *, where: str) -> Mapping[str, Any]:
+    """Return a table whose keys are all known, or raise `InputError` with the near name."""
+    if not isinstance(value, Mapping):
+        raise InputError(where, expected="a table", found=repr(value)[:60], where=_FILE)
+    listed = tuple(keys)
+    for key in value:
+        if key not in listed:
+            raise InputError(
+                f"key {key!r}",
+                expected="one of " + ", ".join(listed),
+                found="an unknown key" + nearest(key, listed),
+                where=f"{_FILE} {where}",
+            )
+    return value
+
+
+def read_column_names(value: object) -> dict[str, str]:
+    """Return ``[columns]``: headers by quantity."""
+    table = _table(value, QUANTITIES, where="[columns]")
+    for key, header in table.items():
+        if not isinstance(header, str) or not header.strip():
+            raise InputError(
+                key, expected="a header's text", found=repr(header), where=f"{_FILE} [columns]"
+            )
+    return dict(table)
+
+
+def read_column_units(value: object) -> dict[str, str]:
+    """Return ``[units]``: checked units by quantity."""
+    where = f"{_FILE} [units]"
+    table = _table(value, QUANTITIES, where="[units]")
+    return {
+        key: check_unit(unit, QUANTITIES[key], name=key, where=where) for key, unit in table.items()
+    }
+
+
+def read_device(value: object) -> Device:
+    """Return ``[device]``: a preset, its values replaced by those beside it, or values alone.
+
+    Raises
+    ------
+    InputError
+        On an unknown key, a unit of the wrong kind or impossible geometry.
+    """
+    where = f"{_FILE} [device]"
+    table = _table(value, ("preset", "name", *_DEVICE, "turns", "fluid"), where="[device]")
+    plain: dict[str, Any] = {}
+    for key in ("preset", "name"):
+        if key in table:
+            if not isinstance(table[key], str):
+                raise InputError(key, expected="text", found=repr(table[key]), where=where)
+            plain[key] = table[key]
+    for key, kind in _DEVICE.items():
+        if key in table:
+            plain[key] = quantity(table[key], kind, name=key, where=where)
+    if "turns" in table:
+        plain["turns"] = number("turns", _plain_number(table["turns"]), above=0.0, where=where)
+    if "fluid" in table:
+        inside = f"{_FILE} [device.fluid]"
+        fluid = _table(table["fluid"], _FLUID, where="[device.fluid]")
+        plain["fluid"] = {
+            key: quantity(text, _FLUID[key], name=key, where=inside) for key, text in fluid.items()
+        }
+    try:
+        return Device.from_dict(plain, where=where)
+    except InputError as error:
+        place = error.where if error.where.startswith(_FILE) else where
+        raise InputError(
+            error.what, expected=error.expected, found=error.found, where=place
+        ) from None
+
+
+def _plain_number(value: object) -> object:
+    """Return a number as it is, and anything that only converts to one as text to be refused."""
+    return value if isinstance(value, int | float) and not isinstance(value, bool) else repr(value)
+
+
+def read_rig(value: object) -> RigLimits:
+    """Return ``[rig]``: limits for proposed tests, all positive."""
+    where = f"{_FILE} [rig]"
+    table = _table(value, _RIG, where="[rig]")
+    limits = {
+        key: number(key, quantity(text, _RIG[key], name=key, where=where), above=0.0, where=where)
+        for key, text in table.items()
+    }
+    return RigLimits(**limits)
+
+
+def read_system(value: object) -> CarriedSystem:
+    """Return ``[system]``: the mass and spring that the device works in."""
+    where = f"{_FILE} [system]"
+    table = _table(value, (*_SYSTEM, "input"), where="[system]")
+    for key in (*_SYSTEM, "input"):
+        if key not in table:
+            raise InputError(key, expected="given", found="nothing", where=where)
+    found = {
+        key: number(key, quantity(table[key], kind, name=key, where=where), above=0.0, where=where)
+        for key, kind in _SYSTEM.items()
+    }
+    driven = table["input"]
+    choices = ("base_acceleration", "applied_force")
+    if not isinstance(driven, str):
+        raise InputError(
+            "input", expected="one of " + ", ".join(choices), found=repr(driven), where=where
+        )
+    return CarriedSystem(input=one_of("input", driven, choices, where=where), **found)
+
+
+def read_entries(value: object) -> list[Entry]:
+    """Return ``[[records]]``: at least one, each file once."""
+    if not isinstance(value, list) or not value:
+        raise InputError(
+            "[[records]]",
+            expected='at least one table with a file, such as file = "run1.csv"',
+            found="none" if not value else "something else",
+            where=_FILE,
+        )
+    entries: list[Entry] = []
+    for index, item in enumerate(value, start=1):
+        where = f"[[records]] {index}"
+        table = _table(item, ("file", "frequency", "amplitude", "held_out"), where=where)
+        file = table.get("file")
+        place = f"{_FILE} {where}"
+        if not isinstance(file, str) or not file.strip():
+            raise InputError("file", expected="a file's name", found=repr(file), where=place)
+        if any(entry.file == file for entry in entries):
+            raise InputError("file", expected="listed once", found=f"{file!r} again", where=place)
+        held_out = table.get("held_out", False)
+        if not isinstance(held_out, bool):
+            raise InputError(
+                "held_out", expected="true or false", found=repr(held_out), where=place
+            )
+        labels: dict[str, float | None] = {"frequency": None, "amplitude": None}
+        for key, kind in (("frequency", "frequency"), ("amplitude", "length")):
+            if key in table:
+                si = quantity(table[key], kind, name=key, where=place)
+                labels[key] = number(key, si, above=0.0, where=place)
+        entries.append(Entry(file, labels["frequency"], labels["amplitude"], held_out))
+    return entries

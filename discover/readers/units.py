@@ -1,0 +1,186 @@
+"""Units at the edge: everything a user writes is converted to SI here, by pint."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import pint
+
+from models.checks import Array, InputError, number
+
+SI_UNITS = {
+    "time": "s",
+    "frequency": "Hz",
+    "length": "m",
+    "speed": "m/s",
+    "acceleration": "m/s^2",
+    "force": "N",
+    "mass": "kg",
+    "stiffness": "N/m",
+    "density": "kg/m^3",
+    "dynamic viscosity": "Pa*s",
+    "temperature": "K",
+}
+"""Every kind of quantity that a campaign may hold, with its SI unit."""
+
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![.\d])")
+# A power only of a unit and of one digit: pint would else work on 9^9^9^9 for ever.
+_UNIT = re.compile(
+    r"(?!.*[\d.]\s*(?:\^|\*\*))(?!.*(?:\^|\*\*)\s*[+-]?\d\d)(?:[^\W\d]|[°%(]|1?\s*/)[\w\s*/^().+-]*"
+)
+_ANGLES = ("radian", "degree", "revolution", "revolutions_per_minute", "revolutions_per_second")
+
+
+@lru_cache(maxsize=1)
+def _registry() -> pint.UnitRegistry[Any]:
+    return pint.UnitRegistry()
+
+
+def _tidy(text: str) -> str:
+    return text.replace("·", "*").replace("⋅", "*").replace("−", "-").strip()
+
+
+@dataclass(frozen=True)
+class _Conversion:
+    """SI value = value * factor / divisor + offset; a divisor keeps 12 mm exactly 0.012 m."""
+
+    factor: float
+    divisor: float
+    offset: float
+
+
+@lru_cache(maxsize=512)
+def _conversion(text: str, kind: str) -> _Conversion:
+    """Return how a unit of the right dimension converts, or raise ValueError with why not."""
+    tidy = _tidy(text)
+    match = None if tidy.startswith("1/") else _NUMBER.match(tidy)
+    scale, name = (float(match.group(1)), tidy[match.end() :].strip()) if match else (1.0, tidy)
+    if len(name) > 60 or not _UNIT.fullmatch(name):
+        raise ValueError(f"{text!r}, which is not a unit")
+    registry = _registry()
+    try:
+        unit = registry.parse_units(name)
+        dimension = unit.dimensionality
+    except Exception:  # pint's parser lets errors of many kinds through
+        raise ValueError(f"{text!r}, which is not a known unit") from None
+    target = SI_UNITS[kind]
+    if dimension != registry.parse_units(target).dimensionality:
+        slip = kind == "acceleration" and str(unit) in ("gram", "gauss")
+        hint = " (standard gravity is g_0)" if slip else ""
+        raise ValueError(f"{text!r}, a unit of {_dimension(unit)}{hint}")
+    if kind == "frequency" and any(key in unit._units for key in _ANGLES):
+        turn = float(registry.Quantity(scale, unit).to("radian/second").magnitude)
+        return _Conversion(turn / (2.0 * math.pi), 1.0, 0.0)
+    zero = float(registry.Quantity(0.0, unit).to(target).magnitude)
+    factor = (float(registry.Quantity(1.0, unit).to(target).magnitude) - zero) * scale
+    if zero:
+        return _Conversion(round(factor, 12), 1.0, zero)
+    inverse = round(1.0 / factor) if 0.0 < factor < 1.0 else 0
+    if inverse and math.isclose(inverse * factor, 1.0, rel_tol=1e-12):
+        return _Conversion(1.0, float(inverse), 0.0)
+    return _Conversion(factor, 1.0, 0.0)
+
+
+def _dimension(unit: Any) -> str:
+    """Return what a unit measures, in words where there is one of the listed kinds."""
+    for kind, name in SI_UNITS.items():
+        if unit.dimensionality == _registry().parse_units(name).dimensionality:
+            return kind
+    return str(unit.dimensionality).replace("[", "").replace("]", "")
+
+
+def check_unit(text: object, kind: str, *, name: str, where: str) -> str:
+    """Return a unit as written if it measures `kind`, or raise `InputError`.
+
+    Examples
+    --------
+    >>> check_unit("kN", "force", name="force", where="campaign.toml")
+    'kN'
+    """
+    expected = f"a unit of {kind} such as {SI_UNITS[kind]!r}"
+    if not isinstance(text, str):
+        raise InputError(f"unit of {name}", expected=expected, found=repr(text), where=where)
+    try:
+        _conversion(text, kind)
+    except ValueError as error:
+        raise InputError(
+            f"unit of {name}", expected=expected, found=str(error), where=where
+        ) from None
+    return text
+
+
+def same_unit(first: str, second: str, kind: str) -> bool:
+    """Return whether two checked units are the same.
+
+    Examples
+    --------
+    >>> same_unit("kN", "1e3 N", "force")
+    True
+    """
+    probe = np.array([1.0, 2.0])
+    return bool(np.allclose(to_si(probe, first, kind), to_si(probe, second, kind), rtol=1e-12))
+
+
+def to_si(values: Array, unit: str, kind: str) -> Array:
+    """Return values in SI from a unit that `check_unit` has passed.
+
+    Parameters
+    ----------
+    values : ndarray
+        As measured.
+    unit : str
+        Such as "mm", "kN" or "degC" (whose offset is applied).
+    kind : str
+        A key of `SI_UNITS`.
+
+    Returns
+    -------
+    ndarray of the same shape, always new
+
+    Examples
+    --------
+    >>> to_si(np.array([20.0]), "degC", "temperature").tolist()
+    [293.15]
+    """
+    how = _conversion(unit, kind)
+    return np.asarray(values * how.factor / how.divisor + how.offset, dtype=np.float64)
+
+
+def quantity(value: object, kind: str, *, name: str, where: str) -> float:
+    """Return a number with a unit, such as ``"27 mPa*s"``, in SI.
+
+    Parameters
+    ----------
+    value : object
+        As read from ``campaign.toml``: a string of a number and a unit.
+    kind : str
+        What it must measure: a key of `SI_UNITS`.
+    name, where : str
+        The key and its table, for messages.
+
+    Raises
+    ------
+    InputError
+        Where it is not a number with a unit, or measures something else.
+
+    Examples
+    --------
+    >>> round(quantity("5 g_0", "acceleration", name="max_acceleration", where="[rig]"), 5)
+    49.03325
+    """
+    expected = f'a number with a unit of {kind}, such as "1 {SI_UNITS[kind]}"'
+    text = value if isinstance(value, str) else ""
+    match = _NUMBER.match(_tidy(text))
+    unit = _tidy(text)[match.end() :].strip() if match else ""
+    if match is None or not unit:
+        raise InputError(name, expected=expected, found=repr(value), where=where)
+    try:
+        _conversion(unit, kind)
+    except ValueError as error:
+        raise InputError(name, expected=expected, found=str(error), where=where) from None
+    return number(name, float(to_si(np.array([float(match.group(1))]), unit, kind)[0]), where=where)
