@@ -23,7 +23,8 @@ def caputo_of_power(power: float, order: float, t: float) -> float:
     """Return the Caputo derivative of t^power, power 0 or above order - 1 or a smaller integer."""
     if power < math.ceil(order) and power == int(power):
         return 0.0
-    return math.gamma(power + 1.0) / math.gamma(power + 1.0 - order) * t ** (power - order)
+    ratio = math.gamma(power + 1.0) / math.gamma(power + 1.0 - order)
+    return float(ratio * t ** (power - order))
 
 
 def composition() -> Claim:
