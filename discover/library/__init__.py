@@ -1,0 +1,19 @@
+"""Candidate columns: the terms of a motion, for the study's engine and for pysindy.
+
+`InerterLibrary` loads when it is asked for: pysindy takes a second to import.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from discover.library.feature_library import InerterLibrary
+
+__all__ = ["InerterLibrary"]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "InerterLibrary":
+        from discover.library.feature_library import InerterLibrary
+
+        return InerterLibrary
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,27 @@
+"""Weighted least squares on few terms: continuous shapes, exact best subsets, pysindy beside them.
+
+The names below load when they are asked for: pysindy takes a second to import.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from discover.regression.baselines import baseline_answers
+    from discover.regression.best_subset import Subset, SubsetPath, best_subsets
+    from discover.regression.optimizer import BestSubset
+
+__all__ = ["BestSubset", "Subset", "SubsetPath", "baseline_answers", "best_subsets"]
+_HOME = {
+    "BestSubset": "optimizer",
+    "Subset": "best_subset",
+    "SubsetPath": "best_subset",
+    "baseline_answers": "baselines",
+    "best_subsets": "best_subset",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
