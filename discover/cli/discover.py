@@ -49,7 +49,6 @@ def discover(
     # Loaded here: --help and complaints about options need no numerics.
     from discover.readers import read_campaign
     from discover.report.document import json_text
-    from discover.report.document import json_text
     from discover.report.study import study_figures, study_report
     from discover.report.verdict import verdict_lines
     from discover.study import StudyOptions, run_study

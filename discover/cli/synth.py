@@ -23,7 +23,7 @@ def synth(
         Path, typer.Argument(metavar="CAMPAIGN-OUT", help="New or empty folder of the campaign.")
     ],
     device: Annotated[
-        str, typer.Option("--device", help="device-12, device-10, or a campaign.toml that has one.")
+        str, typer.Option("--device", help="device-12, device-10, or a campaign that has one.")
     ],
     model: Annotated[
         str | None,
@@ -71,7 +71,8 @@ def synth(
     grid_mm = options.grid(amplitudes, where="--amplitudes") or ()
     check_replaceable(folder, fresh=True)
 
-    from discover.cli.synthesis import campaign_files, known_device, model_records, rig_records
+    from discover.cli.known_device import known_device
+    from discover.cli.synthesis import campaign_files, model_records, rig_records
     from models.rig import Limits, sine_plan
 
     tested = known_device(device)

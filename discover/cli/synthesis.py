@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.cli.named_model import named_model
-from models.checks import Array, InputError
+from models.checks import Array
 from models.device import PRESETS, Device
 from models.flow import dean
 from models.motion import sine_motion
@@ -41,21 +41,6 @@ class MadeRecord:
     """Never fitted, only predicted."""
     digits: int
     """Significant digits that its numbers are written with: more than its chain resolves."""
-
-
-def known_device(name: str) -> Device:
-    """Return a preset, or the device of a campaign.
-
-    Raises
-    ------
-    InputError
-        For a name that is neither, or a campaign without a device.
-    """
-    if name in PRESETS:
-        return Device.preset(name)
-    raise InputError(
-        "device", expected="one of " + ", ".join(PRESETS), found=name, where="--device"
-    )
 
 
 def rig_records(

@@ -1,0 +1,129 @@
+"""``inerter design``: the geometry with the lowest critical frequency under bounds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from discover._version import __version__
+from discover.cli import options
+from discover.cli.invocation import Invocation
+from discover.cli.results import deliver, result_folder, working
+from models.checks import InputError
+
+FAILED = 1
+
+
+def design(
+    context: typer.Context,
+    device: Annotated[
+        str,
+        typer.Option(
+            "--device", help="To improve on: device-12, device-10, or a campaign with one."
+        ),
+    ] = "device-12",
+    amplitude: Annotated[
+        str, typer.Option("--amplitude", help="Displacement amplitude that f_low is judged at.")
+    ] = "5 mm",
+    frequency: Annotated[
+        str, typer.Option("--frequency", help="Highest working frequency: damping is judged there.")
+    ] = "10 Hz",
+    inertance: Annotated[
+        str | None, typer.Option("--inertance", help="Wanted, as '300 kg' [default: the device's].")
+    ] = None,
+    at_least: Annotated[
+        bool, typer.Option("--at-least", help="More inertance than wanted is welcome.")
+    ] = False,
+    damping_ratio: Annotated[
+        float,
+        typer.Option("--damping-ratio", min=0.0, help="Largest damping over the device's own."),
+    ] = 2.0,
+    package_radius: Annotated[
+        str | None, typer.Option("--package-radius", help="Outer radius [default: the device's].")
+    ] = None,
+    package_length: Annotated[
+        str | None, typer.Option("--package-length", help="Height of the helix, likewise.")
+    ] = None,
+    fluids: Annotated[
+        str | None,
+        typer.Option(
+            "--fluids",
+            metavar="NAME,NAME,…",
+            help="What may be filled in: own, water, oil-vg-2 to oil-vg-46 [default: own].",
+        ),
+    ] = None,
+    out: options.Out = None,
+    as_json: options.AsJson = False,
+    seed: options.Seed = options.DEFAULT_SEED,
+) -> int:
+    """Find the geometry and fluid with the lowest critical frequency within bounds.
+
+    Exits 1 where nothing fits; the result then says which bounds keep every design out.
+    """
+    from discover.cli.known_device import known_device
+    from discover.readers.units import quantity
+    from discover.report.design import design_figures, design_lines, design_report
+    from models.design import FLUIDS, DesignBounds, Duty, minimise_critical_frequency
+
+    names = options.identifiers(fluids, where="--fluids") or ("own",)
+    baseline = known_device(device)
+    offered = {"own": baseline.fluid, **FLUIDS}
+    for name in names:
+        if name not in offered:
+            raise InputError(
+                "fluid", expected="one of " + ", ".join(offered), found=name, where="--fluids"
+            )
+    duty = Duty(
+        amplitude=quantity(amplitude, "length", name="amplitude", where="--amplitude"),
+        frequency=quantity(frequency, "frequency", name="frequency", where="--frequency"),
+    )
+    bounds = DesignBounds.around(
+        baseline,
+        duty=duty,
+        damping_ratio=damping_ratio,
+        inertance_rule="at-least" if at_least else "equal",
+    )
+    stated = {
+        "inertance": (inertance, "mass"),
+        "package_radius": (package_radius, "length"),
+        "package_length": (package_length, "length"),
+    }
+    chosen = {
+        key: quantity(text, kind, name=key, where="--" + key.replace("_", "-"))
+        for key, (text, kind) in stated.items()
+        if text is not None
+    }
+    bounds = replace(bounds, **chosen)
+    folder = result_folder("design", device, out)
+    with working("Designing"):
+        result = minimise_critical_frequency(
+            baseline,
+            duty=duty,
+            bounds=bounds,
+            fluids={name: offered[name] for name in names},
+            seed=seed,
+        )
+        document = {
+            "schema": "inerter.design/1",
+            "version": __version__,
+            "seed": seed,
+            "campaign": {"title": f"Rough design from {Path(device).name}", "hash": ""},
+            **result.to_dict(),
+        }
+        figures = design_figures(document)
+        invocation: Invocation = context.obj
+        page = design_report(document, figures, command=invocation.repeat(seed=seed))
+    files = {"report.html": page}
+    files |= {f"figures/{name}.svg": svg for name, svg in figures.items()}
+    deliver(
+        document,
+        name="design.json",
+        folder=folder,
+        files=files,
+        summary=design_lines(document),
+        as_json=as_json,
+    )
+    return 0 if result.feasible else FAILED
