@@ -15,6 +15,7 @@ from discover._version import __version__
 from discover.cli.design import design
 from discover.cli.discover import discover
 from discover.cli.invocation import Invocation
+from discover.cli.reproduce import reproduce
 from discover.cli.synth import synth
 from models.checks import InputError
 
@@ -30,7 +31,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for verb in (discover, design, synth):
+for verb in (discover, synth, design, reproduce):
     app.command(verb.__name__)(verb)
 
 

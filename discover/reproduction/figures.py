@@ -70,7 +70,7 @@ def force_panel(condition: Condition, *identified: Identified) -> Panel:
 def numbers_panel(quantity: str) -> Panel:
     """Return the amplitude of "reynolds" or "dean" over frequency, paper's convention."""
     rule = {"reynolds": reynolds, "dean": dean}[quantity]
-    frequency = np.linspace(0.0, 2.0, 201)
+    frequency = np.geomspace(0.01, 5.0, 201)
     curves = []
     for name in ("device-12", "device-10"):
         for amplitude in (0.005, 0.01):

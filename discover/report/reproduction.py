@@ -1,0 +1,108 @@
+"""The report of the paper reproduced: verdicts first, then tables, figures and every claim."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from markupsafe import Markup
+
+from discover.plots.reproduction import order_figure, paper_figure, table_3_figure
+from discover.report.environment import render
+from discover.report.words import counted, significant
+from discover.reproduction import Reproduction
+
+_ORDER = {"not-reproduced": 0, "unverifiable": 1, "reproduced": 2}
+_WORDS = {
+    "reproduced": "reproduced",
+    "not-reproduced": "not reproduced",
+    "unverifiable": "can't be checked",
+}
+_LEVEL = {"reproduced": "good", "not-reproduced": "error", "unverifiable": "note"}
+
+
+def reproduction_figures(result: Reproduction) -> dict[str, str]:
+    """Return the pictures by name, each one ``<svg>`` element."""
+    drawn = {f"figure-{figure.number}": paper_figure(figure) for figure in result.figures}
+    drawn["table-3"] = table_3_figure(result.comparisons)
+    drawn["orders"] = order_figure(result.curve, result.orders)
+    return drawn
+
+
+def reproduction_lines(result: Reproduction) -> tuple[str, ...]:
+    """Return the answer in a few sentences, for the terminal and the head of the report."""
+    counts = result.counts
+    near = sum(row.distance <= 0.1 for row in result.comparisons)
+    far = [row.printed.condition.label for row in result.comparisons if row.distance > 0.1]
+    lines = [
+        f"Claims: {counts['reproduced']} of {len(result.claims)} reproduced, "
+        f"{counts['not-reproduced']} not reproduced, {counts['unverifiable']} can't be checked.",
+        f"Table 3: {near} of {counted(len(result.comparisons), 'row')} within 0.1 points of what "
+        f"the printed rounding allows; not {', '.join(far)}.",
+    ]
+    if result.identification:
+        fewest = min(row.fewer for row in result.identification)
+        worst = max(row.difference for row in result.identification)
+        lines.append(
+            f"Identification: variable projection meets the genetic algorithm to "
+            f"{significant(worst, 2)} with at least {fewest:.0f} times fewer evaluations."
+        )
+    lines.append("Table 2 is quoted: its measurements are not public.")
+    return tuple(lines)
+
+
+def reproduction_report(
+    result: Reproduction, figures: Mapping[str, str], *, command: str
+) -> str:
+    """Return ``report.html`` of the reproduction.
+
+    Parameters
+    ----------
+    result : Reproduction
+        What was recomputed.
+    figures : mapping
+        From `reproduction_figures`.
+    command : str
+        What a person types to repeat it.
+    """
+    claims = sorted(result.claims, key=lambda claim: _ORDER[claim.verdict])
+    lines = reproduction_lines(result)
+    return render(
+        "reproduction.html",
+        command=command,
+        document_name="reproduction.json",
+        document=result.to_dict(),
+        verdict=[_split(line) for line in lines],
+        claims=[
+            {
+                **claim.to_dict(),
+                "words": _WORDS[claim.verdict],
+                "level": _LEVEL[claim.verdict],
+                "printed": _value(claim.printed),
+                "computed": _value(claim.computed),
+            }
+            for claim in claims
+        ],
+        figures={name: Markup(svg) for name, svg in figures.items()},
+        captions=[
+            {"name": f"figure-{f.number}", "number": f.number, "caption": f.caption}
+            for f in result.figures
+        ],
+        identification=[
+            {**row.to_dict(), "seconds": (row.evolution.seconds, row.projection.seconds)}
+            for row in result.identification
+        ],
+    )
+
+
+def _split(line: str) -> tuple[str, str]:
+    name, colon, text = line.partition(": ")
+    if not colon:
+        return "Note", line
+    return name, text[:1].upper() + text[1:]
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, float | int):
+        return "0" if abs(value) < 1e-12 else significant(float(value), 4)
+    return "–" if value is None else str(value)
