@@ -82,17 +82,20 @@ def fit_sine(
     found = frequency is None
     if frequency is None:
         f = _start(tau, z, duration)
-        f = _refine(tau, z, f, _allowed(min(harmonics, 3), f, t.size, duration), settled=1e-3)
+        short_tau, short_z = _block_means(tau, z, round(t.size / (duration * f)) // 64)
+        orders = _allowed(min(harmonics, 3), f, short_tau.size, duration)
+        f = _refine(short_tau, short_z, f, orders, settled=1e-6)
     else:
         f = number("frequency", frequency, above=0.0, where=where)
     orders = _allowed(harmonics, f, t.size, duration)
-    if found:
-        f = _refine(tau, z, f, orders)
-    solution = Solution(tau, z, f, orders, with_frequency=found)
+    if found and len(orders) > 3:
+        orders_short = _allowed(harmonics, f, short_tau.size, duration)
+        f = _refine(short_tau, short_z, f, orders_short, settled=1e-6)
+    solution = Solution(tau, z, f, orders, with_frequency=False)
     kept, keep_trend = solution.significant()
-    if (kept, keep_trend) != (orders, True):
-        if found:
-            f = _refine(tau, z, f, kept, trend=keep_trend)
+    if found:
+        f = _refine(tau, z, f, kept, trend=keep_trend)
+    if found or (kept, keep_trend) != (orders, True):
         solution = Solution(tau, z, f, kept, trend=keep_trend, with_frequency=found)
     return solution.result(middle, offset, scale)
 
@@ -102,6 +105,15 @@ def _allowed(harmonics: int, frequency: float, size: int, duration: float) -> tu
     nyquist = 0.5 * (size - 1) / duration
     highest = min(harmonics, int(0.9 * nyquist / frequency), (size - 4) // 4)
     return tuple(range(1, max(highest, 1) + 1))
+
+
+def _block_means(tau: Array, z: Array, length: int) -> tuple[Array, Array]:
+    """Return means over blocks of samples: enough to find the frequency, and quicker."""
+    if length < 2:
+        return tau, z
+    count = tau.size // length
+    shape = (count, length)
+    return tau[: count * length].reshape(shape).mean(1), z[: count * length].reshape(shape).mean(1)
 
 
 def _start(tau: Array, z: Array, duration: float) -> float:
