@@ -5,6 +5,7 @@ from models.fractional.dispatch import derivative, fractional_derivative
 from models.fractional.exponential_sum import exponential_sum
 from models.fractional.result import FractionalDerivative
 from models.fractional.spectral import harmonic_factors, spectral_derivative
+from models.fractional.streaming import stream_derivative
 
 __all__ = [
     "FractionalDerivative",
@@ -16,4 +17,5 @@ __all__ = [
     "low_pass",
     "noise_cutoff",
     "spectral_derivative",
+    "stream_derivative",
 ]

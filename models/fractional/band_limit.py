@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import scipy.fft
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.signal.windows import kaiser
 
 from models.checks import number
@@ -15,9 +15,13 @@ from models.fractional.orders import Array, checked_orders, checked_record
 from models.fractional.spectral import TRANSITION, harmonic_factors, low_pass_gain
 
 # Lengths at each end, in periods of the cut-off: fitted, and added beyond the record.
-_FITTED = 4.0
+_FITTED = 6.0
 _ADDED = 5.0
 _KAISER = 18.0
+# Power over the noise floor that chance alone does not reach.
+_CLEAR = 20.0
+# Samples per period of the cut-off that the fit at the ends uses; a finer record is thinned.
+_DENSITY = 256.0
 
 
 def low_pass(y: ArrayLike, dt: float, *, cutoff: float, edge_noise: float = 1e-3) -> Array:
@@ -130,8 +134,8 @@ def band_limited_derivative(
 @functools.lru_cache(maxsize=32)
 def _continuation(
     fitted: int, added: int, band: float, ratio: float
-) -> tuple[Array, Array]:
-    """Projector (F, fitted) and continuation (added, F) of the band-limited fit at an end.
+) -> tuple[NDArray[np.intp], Array, Array]:
+    """Nodes (M,), projector (F, M) and continuation (added, F) of the fit at an end.
 
     The prior is a flat spectrum up to the cut-off (`band`, cycles per sample) that falls to
     nothing at the filter's upper end; the ridge is what noise of `ratio` calls for.
@@ -147,19 +151,20 @@ def _continuation(
         columns = np.concatenate([np.ones((n.size, 1)), np.cos(angle), np.sin(angle)], axis=1)
         return np.asarray(columns * prior)
 
-    inside = features(np.arange(1.0 - fitted, 1.0))
+    nodes = np.arange(fitted - 1, -1, -max(1, int(1.0 / (_DENSITY * band))))[::-1]
+    inside = features(np.asarray(nodes + 1.0 - fitted, dtype=np.float64))
     outside = features(np.arange(1.0, added + 1.0))
     ridge = ratio * math.sqrt(float(prior @ prior))
     left, values, right = np.linalg.svd(inside, full_matrices=False)
     projector = (right.T * (values / (values**2 + ridge**2))) @ left.T
     fade = low_pass_gain(np.arange(1.0, added + 1.0), 0.5 * added)
-    return projector, outside * fade[:, None]
+    return nodes, projector, outside * fade[:, None]
 
 
-def _continue(end: Array, operators: tuple[Array, Array]) -> Array:
+def _continue(end: Array, operators: tuple[NDArray[np.intp], Array, Array]) -> Array:
     """Continue records beyond their last sample."""
-    projector, continuation = operators
-    return np.asarray(end @ projector.T @ continuation.T)
+    nodes, projector, continuation = operators
+    return np.asarray(end[:, nodes] @ projector.T @ continuation.T)
 
 
 def noise_cutoff(x: ArrayLike, dt: float, order: float = 2.0) -> float:
@@ -167,7 +172,7 @@ def noise_cutoff(x: ArrayLike, dt: float, order: float = 2.0) -> float:
 
     Minimises the expected error of the derivative: signal lost above the cut-off plus noise
     let through below, both weighted by :math:`\omega^{2\alpha}`. The noise floor is the level
-    of the quietest part of the spectrum's upper half.
+    of the second quietest quarter of the spectrum's upper half.
 
     Parameters
     ----------
@@ -205,11 +210,13 @@ def noise_cutoff(x: ArrayLike, dt: float, order: float = 2.0) -> float:
     frequency = scipy.fft.rfftfreq(samples, step)
     nyquist = 0.5 / step
     parts = np.array_split(power[:, frequency >= 0.5 * nyquist], 4, axis=1)
-    floors = np.min([np.median(part, axis=1) for part in parts], axis=0) / math.log(2.0)
+    # The second quietest quarter: chance makes the quietest of short records too low.
+    floors = np.sort([np.median(part, axis=1) for part in parts], axis=0)[1] / math.log(2.0)
     weight = np.where(frequency > 0.0, frequency, frequency[1]) ** (2.0 * alpha)
     highest = 0.0
     for spectrum, floor in zip(power, floors, strict=True):
-        lost = np.cumsum((np.clip(spectrum - floor, 0.0, None) * weight)[::-1])[::-1]
+        signal = np.where(spectrum > _CLEAR * floor, spectrum - floor, 0.0)
+        lost = np.cumsum((signal * weight)[::-1])[::-1]
         passed = np.cumsum(floor * weight)
         cost = passed.copy()
         cost[:-1] += lost[1:]

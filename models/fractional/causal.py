@@ -9,6 +9,7 @@ from models.fractional.convolution import convolve, weight_spectra
 from models.fractional.correction import (
     HEAD_SAMPLES,
     MOMENTS,
+    POWERS,
     end_corrections,
     head_corrections,
 )
@@ -58,8 +59,7 @@ def causal_derivative(
     scales = dt**-orders
     if not corrected and not caputo:
         return convolve(x[None], np.zeros(orders.size, dtype=np.intp), spectra, scales)
-    count = max(p, 2)
-    starts = np.stack([start_coefficients(row, count) for row in x])
+    starts = np.stack([start_coefficients(row, POWERS) for row in x])
     # Two variants of the record: as it is, and without its initial value for Caputo.
     choice = ((orders > 0.0) & caputo).astype(np.intp)
     coefficients = np.stack([starts, starts])
@@ -68,11 +68,11 @@ def causal_derivative(
     if corrected:
         touched = min(MOMENTS, x.shape[1])
         for source, known in zip(sources, coefficients, strict=False):
-            source[:, :touched] += (known @ end_corrections(count))[:, :touched]
+            source[:, :touched] += (known @ end_corrections(POWERS))[:, :touched]
     out = convolve(sources, choice, spectra, scales)
     if corrected:
         head = min(HEAD_SAMPLES, x.shape[1])
-        rest = head_corrections(tuple(orders.tolist()), p, count)[:, :, :head]
+        rest = head_corrections(tuple(orders.tolist()), p, POWERS)[:, :, :head]
         out[:, :, :head] += scales[:, None, None] * (coefficients[choice] @ rest)
     # A slope that is only rounding leaves nothing to take off.
     moving = np.abs(starts[:, 1]) > 1e-15 * np.max(np.abs(x), axis=1)

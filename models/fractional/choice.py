@@ -72,6 +72,39 @@ def _scaled_size(measured: Roughness, orders: Array) -> Array:
     return np.asarray(np.maximum(size * turn**orders, 1e-300))
 
 
+def best_steps(rows: Array, orders: Array) -> tuple[str, float]:
+    """Return the BDF scheme that balances truncation against noise, and its expected error.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (R, N)
+    orders : ndarray, shape (K,)
+
+    Returns
+    -------
+    name : str
+        "bdf2" to "bdf6".
+    error : float
+        Relative rms error of the worst order and record.
+
+    Examples
+    --------
+    >>> best_steps(np.sin(0.05 * np.arange(1000))[None], np.array([0.5]))[0]
+    'bdf6'
+    """
+    measured = [roughness(row) for row in rows]
+    errors = {}
+    for name, p in BDF_STEPS.items():
+        if name != "gl":
+            each = [
+                np.hypot(expected_noise(m, orders, p), expected_truncation(m, orders, p))
+                for m in measured
+            ]
+            errors[name] = float(np.max(each))
+    best = min(errors, key=lambda name: errors[name])
+    return best, errors[best]
+
+
 def choose_causal(rows: Array, orders: Array, dt: float) -> Choice:
     """Choose for a derivative from the first sample on.
 
@@ -95,26 +128,14 @@ def choose_causal(rows: Array, orders: Array, dt: float) -> Choice:
     >>> choose_causal(x[None], np.array([0.5]), 1.0).scheme in BDF_STEPS
     True
     """
-    measured = [roughness(row) for row in rows]
-    names = [name for name in BDF_STEPS if name != "gl"]
-    errors = [
-        max(
-            float(np.max(np.hypot(
-                expected_noise(m, orders, BDF_STEPS[name]),
-                expected_truncation(m, orders, BDF_STEPS[name]),
-            )))
-            for m in measured
-        )
-        for name in names
-    ]
-    least = int(np.argmin(errors))
-    best = Choice(names[least])
-    if errors[least] <= _FIT_ABOVE or rows.shape[1] < 32:
+    name, error = best_steps(rows, orders)
+    best = Choice(name)
+    if error <= _FIT_ABOVE or rows.shape[1] < 32:
         return best
-    fits = _explaining_fits(rows, measured)
+    fits = _explaining_fits(rows, [roughness(row) for row in rows])
     if fits:
         return Choice("harmonics", fits=fits)
-    if errors[least] <= _FILTER_ABOVE:
+    if error <= _FILTER_ABOVE:
         return best
     cutoff = noise_cutoff(rows, dt, float(orders.max()))
     return Choice("band-limited", cutoff) if TRANSITION * cutoff * dt < 0.5 else best

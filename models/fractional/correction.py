@@ -11,6 +11,8 @@ from scipy.special import bernoulli, rgamma
 from models.fractional.orders import Array
 from models.fractional.weights import convolution_weights
 
+POWERS = 6
+"""Powers of time made exact, from t^0 on: as many as the highest order of convergence."""
 MOMENTS = 8
 """Samples at the start that carry the end correction of the sum."""
 HEAD_SAMPLES = 128
