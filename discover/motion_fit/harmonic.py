@@ -75,7 +75,8 @@ def observe_sine(
     Returns
     -------
     Observation
-        With one window of up to 31 harmonics.
+        With one window of up to 31 harmonics, their phases counted from the motion's own, so
+        that lines of different records can be compared.
 
     Raises
     ------
@@ -122,15 +123,17 @@ def observe_sine(
     power = float(np.sum(np.abs(lines) ** 2))
     variance = np.maximum(density / (2.0 * duration), _RELATIVE_FLOOR**2 * power)
     fitted_phase = displacement is None
+    harmonic = np.arange(count + 1)
     if displacement is None:
         displacement = _fit_phase(record, lines, project, time, frequency, variance)
+    turn = np.exp(-1j * harmonic * (np.angle(displacement[1]) + 0.5 * np.pi))
     motion = _motion_at(time, frequency, displacement)
     speed = 2.0 * np.pi * frequency * float(abs(displacement[1]))
     window = Window(
         omega=2.0 * np.pi * multiples,
-        force=lines,
+        force=lines * turn,
         variance=variance,
-        project=project,
+        project=lambda columns: project(columns) * turn,
         frequency=frequency,
         amplitude=float(abs(displacement[1])),
         speed=speed,

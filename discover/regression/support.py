@@ -21,6 +21,12 @@ from models.terms import find_term
 
 _GRID = 61
 _TINY = 1e-12
+MOST_DELAY = 5e-3  # s: channels of one rig are not further apart; more is memory of the device
+_TWIN = 0.05  # closer than this, the difference of two columns is another shape's slope
+_TWINS = {
+    "fractional-derivative": {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0},
+    "power-law-damping": {"viscous-damping": 1.0, "quadratic-damping": 2.0},
+}
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,8 @@ class SupportFit:
     """False where a coefficient that can't be negative is."""
     weights: Array = field(repr=False)
     """(K, k): the fit's columns as combinations of the dictionary's."""
+    shares: Array = field(repr=False)
+    """(k,) norm of each term's force over that of the measured force."""
 
     @property
     def combined(self) -> Array:
@@ -91,8 +99,17 @@ def _shaped(identifier: str, value: float, dictionary: Dictionary) -> Array:
 
 def _signs_hold(ids: Sequence[str], coefficients: Array) -> bool:
     return all(
-        i == DELAY or not find_term(i).nonnegative or c >= 0.0
+        abs(c) <= MOST_DELAY if i == DELAY else not find_term(i).nonnegative or c >= 0.0
         for i, c in zip(ids, coefficients, strict=True)
+    )
+
+
+def _distinct(support: Support, shapes: tuple[float, ...]) -> bool:
+    """Return False where a free shape sits on a term of integer order that is there already."""
+    return not any(
+        plain in support.plain and abs(shape - value) < _TWIN
+        for identifier, shape in zip(support.free, shapes, strict=True)
+        for plain, value in _TWINS[identifier].items()
     )
 
 
@@ -173,11 +190,14 @@ class ProfiledFit:
         weights = np.column_stack([*shaped, stacked]) if shaped else stacked
         if weights.shape[1] == 0:
             empty = np.empty(0)
-            return SupportFit(support, (), empty, self.energy, True, weights)
-        coefficients, chi2 = solve(self.triangle.columns @ weights, self.triangle.target)
-        valid = _signs_hold(support.ids, coefficients)
+            return SupportFit(support, (), empty, self.energy, True, weights, empty)
+        columns = self.triangle.columns @ weights
+        coefficients, chi2 = solve(columns, self.triangle.target)
+        shares = np.linalg.norm(columns, axis=0) * np.abs(coefficients)
+        shares /= np.sqrt(max(self.energy, 1e-300))
+        valid = _signs_hold(support.ids, coefficients) and _distinct(support, shapes)
         every = (*shapes, *(v for _, v in support.fixed))
-        return SupportFit(support, every, coefficients, chi2, valid, weights)
+        return SupportFit(support, every, coefficients, chi2, valid, weights, shares)
 
     def _search(self, free: tuple[str, ...], base: Array) -> tuple[float, ...]:
         if not free:

@@ -4,12 +4,15 @@ On a measured device every structure is wrong by a little, and noise alone would
 all and choose the most complex. What the best one leaves, above the noise, is added to the noise:
 by harmonic in sine tests, by part of the band in others, in proportion to each record's force.
 It is found in groups of neighbouring records, so that a boundary between bands does not count.
+A model's error changes slowly from test to test: neighbours that err alike are not independent
+witnesses, so the error's variance is raised by what their correlation takes from the count.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,6 +23,7 @@ from discover.triangle import WindowRows
 from models.checks import Array
 
 _GROUP = 9
+_MOST_CORRELATED = 0.8
 _INFORMATIVE = 4  # blocks of a window that carry a model's error: the lowest harmonics
 
 
@@ -41,13 +45,27 @@ def _residual(
     return residual, max(1.0 - best.support.parameters / informative, 0.25)
 
 
+@dataclass(frozen=True)
+class _Share:
+    """A group's misfit above the noise."""
+
+    excess: Array
+    """(B,) by block, relative to the force's power."""
+    error: Array
+    """(B,) its standard error."""
+    product: float
+    """Sum over neighbours of the product of their relative errors at the fundamental."""
+    square: float
+    """Sum over the same windows of the squares."""
+
+
 def _share(
     windows: Sequence[WindowRows], dictionary: Dictionary, supports: Sequence[Support]
-) -> tuple[Array, Array]:
-    """Return by block the excess of the misfit over the noise, relative to power, and its error."""
+) -> _Share:
     residual, freedom = _residual(windows, dictionary, supports)
     size = max(w.count.size for w in windows)
     excess, error, power = np.zeros(size), np.zeros(size), np.zeros(size)
+    relative = []
     for window, rows in zip(windows, residual, strict=True):
         blocks = window.count.size
         found = np.bincount(window.block, weights=rows**2, minlength=blocks) / freedom
@@ -55,8 +73,14 @@ def _share(
         excess[:blocks] += found - expected
         error[:blocks] += 2.0 * window.count * window.variance**2
         power[:blocks] += window.power * window.count
+        relative.append(rows[window.block == 1][:2] / np.sqrt(window.power))
     safe = np.maximum(power, 1e-300)
-    return excess / safe, np.sqrt(error) / safe
+    product, square = 0.0, 0.0
+    for one, two in pairwise(relative):
+        if one.size == two.size:
+            product += float(one @ two)
+            square += 0.5 * float(one @ one + two @ two)
+    return _Share(excess / safe, np.sqrt(error) / safe, product, square)
 
 
 def with_discrepancy(
@@ -85,15 +109,15 @@ def with_discrepancy(
     """
     order = np.argsort(coordinate, kind="stable")
     groups = np.array_split(order, max(1, order.size // _GROUP))
-    shares, errors = [], []
-    for group in groups:
-        share, error = _share([windows[i] for i in group], dictionary, supports)
-        shares.append(share)
-        errors.append(error)
-    size = max(s.size for s in shares)
-    padded = np.array([np.pad(s, (0, size - s.size)) for s in shares])
-    spread = np.array([np.pad(e, (0, size - e.size)) for e in errors])
+    shares = [_share([windows[i] for i in group], dictionary, supports) for group in groups]
+    size = max(s.excess.size for s in shares)
+    padded = np.array([np.pad(s.excess, (0, size - s.excess.size)) for s in shares])
+    spread = np.array([np.pad(s.error, (0, size - s.error.size)) for s in shares])
     median = np.median(padded, axis=0)
     certain = median > 2.0 * np.median(spread, axis=0) / np.sqrt(len(groups))
     level = np.where(certain, median, 0.0)
+    square = sum(s.square for s in shares)
+    correlation = sum(s.product for s in shares) / square if square else 0.0
+    correlation = float(np.clip(correlation, 0.0, _MOST_CORRELATED))
+    level *= (1.0 + correlation) / (1.0 - correlation)
     return [replace(w, discrepancy=level[: w.count.size] * w.power) for w in windows]

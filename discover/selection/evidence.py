@@ -10,7 +10,14 @@ from scipy.special import logsumexp
 
 from discover.library.dictionary import Dictionary
 from discover.regression.support import ProfiledFit, Support, SupportFit
-from discover.selection.structures import STRUCTURES, structure_of
+from discover.selection.structures import (
+    ELASTIC,
+    MINOR,
+    POWER,
+    STRUCTURES,
+    TURBULENT_EXPONENT,
+    structure_of,
+)
 from discover.triangle import Triangle
 
 
@@ -41,6 +48,18 @@ class Contest:
         return next((s for s in self.scored if s.structure == structure), None)
 
 
+def name_of(fit: SupportFit) -> str:
+    """Return the name of a fit's structure."""
+    families = (*fit.support.free, *(i for i, _ in fit.support.fixed))
+    shapes = dict(zip(families, fit.shapes, strict=True))
+    ids = [
+        i
+        for i, share in zip(fit.support.ids, fit.shares, strict=True)
+        if i not in ELASTIC or share > MINOR
+    ]
+    return structure_of(ids, shapes.get(POWER, TURBULENT_EXPONENT))
+
+
 def penalty(parameters: int, rows: int) -> float:
     """Return half the Bayesian information criterion's penalty, nats."""
     return 0.5 * parameters * float(np.log(max(rows, 2)))
@@ -56,9 +75,7 @@ def score(
     for support in supports:
         fit = engine.fit(support)
         value = -0.5 * (fit.chi2 + triangle.log_determinant) - penalty(support.parameters, size)
-        result.append(
-            Scored(fit, structure_of(support.ids), value if fit.valid else -np.inf)
-        )
+        result.append(Scored(fit, name_of(fit), value if fit.valid else -np.inf))
     return sorted(result, key=lambda s: -s.log_evidence)
 
 

@@ -11,13 +11,16 @@ from discover.library.dictionary import Dictionary
 from discover.regression.covariance import Uncertainty, uncertainty
 from discover.regression.support import ProfiledFit, Support, SupportFit
 from discover.selection.discrepancy import with_discrepancy
-from discover.selection.evidence import Contest, contest
-from discover.selection.materiality import Materiality, relative_triangle
-from discover.selection.structures import STRUCTURES, named_supports, structure_of
+from discover.selection.evidence import Contest, contest, name_of
+from discover.selection.materiality import Materiality, record_power, relative_triangle
+from discover.selection.prediction import leave_out
+from discover.selection.structures import STRUCTURES, named_supports
 from discover.triangle import WindowRows, triangle_of
 from models.checks import Array
 
 _ROUNDS = 4
+_CROSS_CHECKED = 4  # records from which they check one another, and evidence alone decides
+_NOISE_LIMITED = 0.5  # share of noise in the best prediction's error
 _KEPT = 120
 _KEPT_OF_EACH = 3
 
@@ -71,6 +74,7 @@ def judge(
     coordinate: Array,
     *,
     keep_all: bool = False,
+    seed: int = 0,
 ) -> Judgement:
     """Return the verdict on the windows of one band.
 
@@ -86,6 +90,8 @@ def judge(
         By which neighbours are found.
     keep_all : bool
         Leave out the rule that every term must explain more than remains.
+    seed : int
+        Of the bootstrap over records.
 
     Returns
     -------
@@ -95,7 +101,10 @@ def judge(
     weighed = with_discrepancy(windows, dictionary, coordinate, start)
     result = contest(triangle_of(weighed, 1.0), dictionary, supports)
     if not keep_all:
-        candidates = _material(result, Materiality(windows, dictionary))
+        candidates = [s.fit.support for s in result.scored if np.isfinite(s.log_evidence)]
+        if len({w.record for w in windows}) < _CROSS_CHECKED:
+            candidates = _material(result, Materiality(windows, dictionary))
+        candidates = candidates[:_KEPT] or [result.scored[0].fit.support]
         for _ in range(_ROUNDS):
             leading = candidates[0]
             weighed = with_discrepancy(windows, dictionary, coordinate, [leading])
@@ -103,8 +112,12 @@ def judge(
             candidates = [s.fit.support for s in result.scored]
             if candidates[0] == leading:
                 break
-    best = result.scored[0].fit.support
-    final = _estimation(weighed)
+    best, probabilities = result.scored[0].fit.support, result.probabilities
+    several = len({w.record for w in windows}) >= _CROSS_CHECKED
+    by_noise = several
+    if several and not keep_all:
+        best, probabilities, by_noise = _predictive(windows, dictionary, result, seed)
+    final = list(weighed) if by_noise else _alike(weighed)
     engine = ProfiledFit(triangle_of(final, 1.0), dictionary)
     fit = engine.fit(best)
     freedom = max(_clusters(final) - best.parameters, 1)
@@ -121,8 +134,8 @@ def judge(
         engine=engine,
         fit=fit,
         uncertainty=spread,
-        structure=structure_of(best.ids),
-        probabilities={name: result.probabilities.get(name, 0.0) for name in STRUCTURES},
+        structure=name_of(fit),
+        probabilities={name: probabilities.get(name, 0.0) for name in STRUCTURES},
     )
 
 
@@ -137,37 +150,61 @@ def _material(result: Contest, materiality: Materiality) -> list[Support]:
         if materiality.holds(scored.fit.support):
             kept.append(scored.fit.support)
             count[scored.structure] += 1
-    return kept or [result.scored[0].fit.support]
+    return kept
+
+
+def _predictive(
+    windows: Sequence[WindowRows], dictionary: Dictionary, result: Contest, seed: int
+) -> tuple[Support, dict[str, float], bool]:
+    """Return the best support, the structures' probabilities, and whether noise is the limit.
+
+    Where noise is the limit evidence decides; where models err by more, the prediction of records
+    left out does; between, in proportion to what of the error is noise. Of models that predict
+    alike the one with fewest terms stands for its structure.
+    """
+    engine = ProfiledFit(relative_triangle(windows), dictionary)
+    fits = [engine.fit(s.fit.support) for s in result.scored]
+    fits = [f for f in fits if f.valid] or fits
+    names = [name_of(f) for f in fits]
+    predictions = leave_out(windows, fits)
+    share = predictions.noise_share
+    parameters = np.array([f.support.parameters for f in fits])
+    smallest = predictions.parsimonious(parameters)
+    near = np.flatnonzero(parameters <= parameters[smallest] + 1)
+    wins = predictions.only(near).wins([names[i] for i in near], np.random.default_rng(seed))
+    mixed = {
+        name: share * result.probabilities.get(name, 0.0) + (1.0 - share) * wins.get(name, 0.0)
+        for name in STRUCTURES
+    }
+    leading = max(mixed, key=lambda name: mixed[name])
+    if share > _NOISE_LIMITED:
+        scored = result.best(leading) or result.scored[0]
+        return scored.fit.support, mixed, True
+    own = [int(i) for i in near if names[i] == leading] or [smallest]
+    chosen = own[predictions.only(own).parsimonious(parameters[own])]
+    return fits[chosen].support, mixed, False
 
 
 def _clusters(windows: Sequence[WindowRows]) -> int:
     return len(windows)
 
 
-def _estimation(windows: Sequence[WindowRows]) -> list[WindowRows]:
-    """Return windows weighted for estimation: flat over the band within a single long record.
+def _alike(windows: Sequence[WindowRows]) -> list[WindowRows]:
+    """Return windows weighted so that every record's relative error counts alike.
 
-    There the misfit is one model error and not noise, and weighting its spectrum would trade
-    force error for nothing; between records, and over harmonics, the weights stay.
+    Where models err by more than the noise, the misfit is one model error: weighting its spectrum
+    would trade force error for nothing.
     """
-    if len({w.record for w in windows}) > 1:
-        return list(windows)
+    power = record_power(windows)
     rows = sum(float(w.count.sum()) for w in windows)
-    misfit = sum(float((w.variance + w.discrepancy) @ w.count) for w in windows)
-    level = misfit / rows
+    misfit = sum(
+        float((w.variance + w.discrepancy) @ w.count) * w.share / power[w.record] for w in windows
+    )
     return [
-        replace(w, variance=np.full_like(w.variance, level / w.share * _mean_share(windows)),
-                discrepancy=np.zeros_like(w.discrepancy))
+        replace(
+            w,
+            variance=np.full_like(w.variance, misfit / rows * power[w.record] / w.share),
+            discrepancy=np.zeros_like(w.discrepancy),
+        )
         for w in windows
     ]
-
-
-def _mean_share(windows: Sequence[WindowRows]) -> float:
-    return float(np.mean([w.share for w in windows]))
-
-
-def relative_misfit(windows: Sequence[WindowRows], fit: SupportFit) -> float:
-    """Return ||e||/||F|| over the windows' rows and what is in none of them."""
-    triangle = relative_triangle(windows)
-    error = triangle.matrix @ np.append(-fit.combined, 1.0)
-    return float(np.sqrt((error @ error) / max(triangle.target @ triangle.target, 1e-300)))

@@ -11,9 +11,14 @@ from discover.regression.support import Support
 FRACTIONAL = "fractional-derivative"
 POWER = "power-law-damping"
 TURBULENT_EXPONENT = 1.75  # Blasius friction, as in the paper's Eq. 6
+TURBULENT_RANGE = (1.5, 2.0)
 STRUCTURES = ("FOIM", "IOIM-linear", "IOIM-laminar", "IOIM-turbulent", "other")
-NUISANCE = ("coulomb-friction", "force-offset", DELAY)
+NUISANCE = ("coulomb-friction", "force-offset", "asymmetric-damping", DELAY)
 """Terms that any structure may carry without being another structure."""
+ELASTIC = ("stiffness", "cubic-stiffness")
+"""Terms that it may carry where their force is minor: seals and oil yield a little."""
+MINOR = 0.25
+"""Share of the force up to which it is."""
 EXTRAS = (
     "coulomb-friction",
     "force-offset",
@@ -34,8 +39,10 @@ _CORES: tuple[tuple[str, ...], ...] = (
 )
 
 
-def structure_of(ids: Sequence[str]) -> str:
+def structure_of(ids: Sequence[str], exponent: float = TURBULENT_EXPONENT) -> str:
     """Return the name of the structure that these terms make.
+
+    Power-law damping is turbulent friction where its exponent is between 1.5 and 2.
 
     Examples
     --------
@@ -51,7 +58,8 @@ def structure_of(ids: Sequence[str]) -> str:
         return "IOIM-linear"
     if core <= {"inertia", "viscous-damping", "quadratic-damping"}:
         return "IOIM-laminar"
-    if POWER in core and core <= {"inertia", "viscous-damping", "quadratic-damping", POWER}:
+    turbulent = TURBULENT_RANGE[0] <= exponent <= TURBULENT_RANGE[1]
+    if POWER in core and turbulent and core <= {"inertia", "viscous-damping", "quadratic-damping", POWER}:
         return "IOIM-turbulent"
     return "other"
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.dean import AmplitudeExponent, amplitude_exponent
-from discover.regression.support import SupportFit
+from discover.regression.support import Support, SupportFit
 from discover.segmentation import MIN_WINDOWS, Segmentation, segment
 from discover.selection.discrepancy import with_discrepancy
 from discover.selection.judge import Judgement, judge
-from discover.selection.structures import NUISANCE, named_supports
+from discover.selection.structures import EXTRAS, NUISANCE, named_supports
 from discover.study.options import StudyOptions
 from discover.study.preparation import Prepared
 from discover.triangle import WindowRows
@@ -53,16 +53,26 @@ def coordinate_values(
     return speed
 
 
-def _search(prepared: Prepared, coordinate: Array, bands: int | None) -> Segmentation:
-    """Return the division, its nuisance terms settled by the bands' own verdicts."""
-    windows = prepared.fitted
+def _weigh(
+    prepared: Prepared, coordinate: Array
+) -> tuple[list[WindowRows], list[Support]]:
+    """Return windows with their model error, and the supports that a band may hold."""
     dictionary = prepared.dictionary
     if len(prepared.supports) == 1:
         supports = list(prepared.supports)
     else:
-        supports = named_supports(dictionary, ())
-    weighed = with_discrepancy(windows, dictionary, coordinate, supports)
-    return segment(weighed, coordinate, dictionary, supports, bands=bands)
+        extras = _extras(prepared, coordinate)
+        plain = named_supports(dictionary, ())
+        supports = list(dict.fromkeys([*plain, *named_supports(dictionary, extras)]))
+    return with_discrepancy(prepared.fitted, dictionary, coordinate, supports), supports
+
+
+def _extras(prepared: Prepared, coordinate: Array) -> tuple[str, ...]:
+    """Return the extra terms that the best model of all windows together has."""
+    whole = judge(
+        prepared.fitted, prepared.dictionary, prepared.supports, coordinate
+    ).support
+    return tuple(i for i in whole.plain if i in EXTRAS)
 
 
 def _log_likelihood(windows: Sequence[WindowRows], fit: SupportFit) -> Array:
@@ -82,10 +92,11 @@ def find_bands(prepared: Prepared, device: Device | None, options: StudyOptions)
     single = len(records) == 1 or len(windows) < 2 * MIN_WINDOWS
     bands = 1 if single else options.bands
     values = coordinate_values(windows, chosen, device, options.convention)
-    division = _search(prepared, values, bands)
+    weighed, supports = _weigh(prepared, values)
+    division = segment(weighed, values, prepared.dictionary, supports, bands=bands)
     if not single and options.coordinate is None and options.bands is None:
         other = coordinate_values(windows, "frequency", device, options.convention)
-        by_frequency = _search(prepared, other, None)
+        by_frequency = segment(weighed, other, prepared.dictionary, supports)
         advantage = float(by_frequency.log_evidence.max() - division.log_evidence.max())
         if advantage > _CLEARLY_BETTER and by_frequency.bands > 1:
             chosen, values, division = "frequency", other, by_frequency
@@ -96,29 +107,19 @@ def find_bands(prepared: Prepared, device: Device | None, options: StudyOptions)
             prepared.supports,
             values[division.members(b)],
             keep_all=len(prepared.supports) == 1,
+            seed=options.seed,
         )
         for b in range(division.bands)
     )
     exponent = None
     if division.bands > 1:
         inside = np.concatenate([division.members(0), division.members(1)])
-        weighed = _weighed(windows, judgements, division)
         lower, upper = judgements[0].fit, judgements[1].fit
-        some = [weighed[i] for i in inside]
+        some = [weighed[int(i)] for i in inside]
         exponent = amplitude_exponent(
             some, _log_likelihood(some, lower), _log_likelihood(some, upper)
         )
     return Bands(chosen, division, judgements, exponent, advantage, single)
-
-
-def _weighed(
-    windows: Sequence[WindowRows], judgements: Sequence[Judgement], division: Segmentation
-) -> dict[int, WindowRows]:
-    result: dict[int, WindowRows] = {}
-    for band, judgement in enumerate(judgements):
-        members = division.members(band)
-        result.update(zip((int(i) for i in members), judgement.windows, strict=True))
-    return result
 
 
 def nuisance_terms(judgement: Judgement) -> tuple[str, ...]:
