@@ -78,7 +78,8 @@ def _draw_numbers(axes: Axes, panel: Panel) -> None:
         color=MUTED, fontsize=8.5,
     )
     axes.set(xlabel="Frequency (Hz)", ylabel=panel.title, xlim=(0.01, 5.0))
-    plain_log_axis(axes, which="x")
+    for which in ("x", "y"):
+        plain_log_axis(axes, which=which)
 
 
 def table_3_figure(rows: tuple[ComparisonRow, ...]) -> str:
@@ -135,7 +136,7 @@ def order_figure(curve: OrderCurve, points: tuple[OrderPoint, ...]) -> str:
         for point in points:
             axes.annotate(
                 point.identified.name, (point.womersley, point.identified.order),
-                xytext=(8, -4), textcoords="offset points", color=MODEL, fontsize=9,
+                xytext=(0, -15), textcoords="offset points", ha="center", color=MODEL, fontsize=9,
             )
         for order, text in ((1.0, "damper"), (1.5, "Stokes layer"), (2.0, "inerter")):
             axes.axhline(order, color=MUTED, linewidth=0.8)

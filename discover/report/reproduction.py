@@ -12,13 +12,19 @@ from discover.report.environment import render
 from discover.report.words import counted, significant
 from discover.reproduction import Reproduction
 
-_ORDER = {"not-reproduced": 0, "unverifiable": 1, "reproduced": 2}
-_WORDS = {
-    "reproduced": "reproduced",
-    "not-reproduced": "not reproduced",
-    "unverifiable": "can't be checked",
+_GROUPS = (
+    ("not-reproduced", "Not borne out by its own formulas"),
+    ("unverifiable", "Can't be checked"),
+    ("reproduced", "Reproduced"),
+)
+# Those that decide what the paper's conclusions rest on, where they don't hold, in short.
+_DECISIVE = {
+    "m1-below-boundary": "its ultra-low model was identified above its own boundary",
+    "figure-8": "that model is not the closer one below the boundary",
+    "one-record": "one record at one frequency can't show a fractional law",
+    "inertia-above-boundary": "De = 100 is not where inertia overtakes viscosity",
+    "low-means-inertial": "a lower critical frequency doesn't mean more inertia",
 }
-_LEVEL = {"reproduced": "good", "not-reproduced": "error", "unverifiable": "note"}
 
 
 def reproduction_figures(result: Reproduction) -> dict[str, str]:
@@ -34,9 +40,12 @@ def reproduction_lines(result: Reproduction) -> tuple[str, ...]:
     counts = result.counts
     near = sum(row.distance <= 0.1 for row in result.comparisons)
     far = [row.printed.condition.label for row in result.comparisons if row.distance > 0.1]
+    failed = {claim.id for claim in result.claims if claim.verdict == "not-reproduced"}
+    against = [text for name, text in _DECISIVE.items() if name in failed]
     lines = [
         f"Claims: {counts['reproduced']} of {len(result.claims)} reproduced, "
         f"{counts['not-reproduced']} not reproduced, {counts['unverifiable']} can't be checked.",
+        *([f"Against it: {'; '.join(against)}."] if against else []),
         f"Table 3: {near} of {counted(len(result.comparisons), 'row')} within 0.1 points of what "
         f"the printed rounding allows; not {', '.join(far)}.",
     ]
@@ -47,7 +56,7 @@ def reproduction_lines(result: Reproduction) -> tuple[str, ...]:
             f"Identification: variable projection meets the genetic algorithm to "
             f"{significant(worst, 2)} with at least {fewest:.0f} times fewer evaluations."
         )
-    lines.append("Table 2 is quoted: its measurements are not public.")
+    lines.append("Table 2: quoted only, its measurements are not public.")
     return tuple(lines)
 
 
@@ -65,7 +74,6 @@ def reproduction_report(
     command : str
         What a person types to repeat it.
     """
-    claims = sorted(result.claims, key=lambda claim: _ORDER[claim.verdict])
     lines = reproduction_lines(result)
     return render(
         "reproduction.html",
@@ -73,19 +81,30 @@ def reproduction_report(
         document_name="reproduction.json",
         document=result.to_dict(),
         verdict=[_split(line) for line in lines],
-        claims=[
+        groups=[
             {
-                **claim.to_dict(),
-                "words": _WORDS[claim.verdict],
-                "level": _LEVEL[claim.verdict],
-                "printed": _value(claim.printed),
-                "computed": _value(claim.computed),
+                "verdict": name,
+                "title": title,
+                "claims": [
+                    {
+                        **claim.to_dict(),
+                        "printed": _value(claim.printed),
+                        "computed": _value(claim.computed),
+                    }
+                    for claim in result.claims
+                    if claim.verdict == name
+                ],
             }
-            for claim in claims
+            for name, title in _GROUPS
         ],
         figures={name: Markup(svg) for name, svg in figures.items()},
         captions=[
-            {"name": f"figure-{f.number}", "number": f.number, "caption": f.caption}
+            {
+                "name": f"figure-{f.number}",
+                "number": f.number,
+                "caption": f.caption,
+                "wide": len(f.panels) > 1,
+            }
             for f in result.figures
         ],
         identification=[
@@ -96,13 +115,11 @@ def reproduction_report(
 
 
 def _split(line: str) -> tuple[str, str]:
-    name, colon, text = line.partition(": ")
-    if not colon:
-        return "Note", line
+    name, _, text = line.partition(": ")
     return name, text[:1].upper() + text[1:]
 
 
 def _value(value: Any) -> str:
     if isinstance(value, float | int):
-        return "0" if abs(value) < 1e-12 else significant(float(value), 4)
+        return "0" if abs(value) < 1e-12 else significant(float(value), 5)
     return "–" if value is None else str(value)

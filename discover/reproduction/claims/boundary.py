@@ -56,7 +56,7 @@ def formula() -> Claim:
     )
     return Claim(
         "critical-frequency",
-        "The critical frequency is De/(8 sqrt2 pi A0) (mu/rho) sqrt(r3 r4)/(r2^2 - r1^2).",
+        "The critical frequency is De/(8√2 π A0) (μ/ρ) √(r3 r4)/(r2² - r1²).",
         verdict(holds=abs(by_formula / by_root - 1.0) < _MARGIN),
         by_formula, by_root, "Hz", "Eq. 16",
         "Device [12], 5 mm: the formula against the root of De(f) = 100 by Eqs. 12 to 15. The "
@@ -82,7 +82,7 @@ def usual_numbers() -> Claim:
         verdict(holds=max(abs(r - 1.0) for r in ratios) < 1e-6),
         "1 and 1", f"{ratios[0]:.3f} and {ratios[1]:.3f}", "times the usual number",
         "Eqs. 12 to 14",
-        "The paper's numbers over those of the package fluids (Re = d u/nu, De = Re sqrt(d/D)).",
+        "The paper's numbers over those of the package fluids (Re = d u/ν, De = Re √(d/D)).",
     )
 
 
@@ -258,8 +258,8 @@ def inertia_above_boundary() -> Claim:
         verdict(holds=all(0.5 < r < 2.0 for r in ratios.values())),
         1.0, ", ".join(f"{name} {ratio:.2f}" for name, ratio in ratios.items()),
         "inertial over damping force at De = 100", "section 3.3",
-        "omega b/c_eq of Eq. 5 at the boundary, to be one within a factor of two. The frequency at "
-        "which the two forces are equal, near 4 nu/(pi r3^2), doesn't depend on the amplitude; "
+        "ω b/c_eq of Eq. 5 at the boundary, to be one within a factor of two. The frequency at "
+        "which the two forces are equal, near 4 ν/(π r3²), doesn't depend on the amplitude; "
         "that at De = 100 does.",
     )
 

@@ -34,7 +34,7 @@ def inertance_of_12() -> Claim:
         "The inertance of device [12] is 370.38 kg.",
         verdict(holds=abs(computed - printed) <= _HALF_CENT),
         printed, computed, "kg", "Table 1, section 3.2",
-        "b = rho (l + 2 l0) S2/(1 + (h/2 pi r4)^2) (S1/S2)^2 from Table 1, to the printed digits.",
+        "b = ρ (l + 2 l0) S2/(1 + (h/2 π r4)²) (S1/S2)² from Table 1, to the printed digits.",
     )
 
 
@@ -44,7 +44,7 @@ def mass_without_transitions() -> Claim:
     printed = PRINTED_INERTANCE["device-12"]
     return Claim(
         "fluid-mass",
-        "The fluid mass in b is rho l S2, of the helix alone (definition under Eq. 6).",
+        "The fluid mass in b is ρ l S2, of the helix alone (definition under Eq. 6).",
         verdict(holds=abs(computed - printed) <= _HALF_CENT),
         printed, computed, "kg", "below Eq. 6",
         "b of device [12] with that mass; 370.38 needs both transition sections in it.",
@@ -129,8 +129,8 @@ def kinematic_viscosities() -> Claim:
         "The kinematic viscosities are 0.0068 for [10] and 0.027 for [12].",
         verdict(holds=abs(computed / ratio - 1.0) < 0.05),
         ratio, computed, "ratio", "section 3.2",
-        "Their ratio, which no unit changes, against mu/rho of Table 1. 0.027 is Table 1's dynamic "
-        f"viscosity; mu/rho is {kinematic[0]:.3g} and {kinematic[1]:.3g} m^2/s.",
+        "Their ratio, which no unit changes, against μ/ρ of Table 1. 0.027 is Table 1's dynamic "
+        f"viscosity; μ/ρ is {kinematic[0]:.3g} and {kinematic[1]:.3g} m²/s.",
     )
 
 

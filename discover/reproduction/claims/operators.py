@@ -35,7 +35,7 @@ def composition() -> Claim:
     once = caputo_of_power(1.0, a + b, t)
     return Claim(
         "composition",
-        "D^a D^b x = D^(a+b) x for Caputo derivatives of orders a, b between 0 and 1.",
+        "D^α D^β x = D^(α+β) x for Caputo derivatives of orders α, β between 0 and 1.",
         verdict(holds=abs(twice - once) <= _ROUND_OFF),
         "equal", f"D^0.6 D^0.6 t = {twice:.3f}, D^1.2 t = {once:.3f} at t = 2", "",
         "Eq. 2",
@@ -54,9 +54,9 @@ def time_scale() -> Claim:
     worst = float(np.max(np.abs(direct - scaled)) / np.max(np.abs(scaled)))
     return Claim(
         "time-scale",
-        "Under tau = omega t the derivative scales with omega^order.",
+        "Under τ = ω t the derivative scales with ω^order.",
         verdict(holds=worst < _ROUND_OFF), 0.0, worst, "relative difference", "Eq. 3",
-        "Caputo derivatives of sin^2 on both time scales, equal to 1e-6.",
+        "Caputo derivatives of sin² on both time scales, equal to 1e-6.",
     )
 
 
@@ -69,7 +69,7 @@ def caputo_of_sine() -> Claim:
     first, last = float(difference[:401].max()), float(difference[-400:].max())
     return Claim(
         "caputo-sine",
-        "The Caputo derivative of A sin(wt + p) is A w^a sin(wt + p + a pi/2).",
+        "The Caputo derivative of A sin(ωt + φ) is A ω^α sin(ωt + φ + απ/2).",
         verdict(holds=first < 0.01), 0.0, first, "of the amplitude", "Eq. 4",
         "Order 0.5 from rest at t = 0: the largest difference in the first cycle, to stay under "
         f"1 %; in the tenth it is {100 * last:.2f} %. Eq. 4 is the steady state (Weyl), and every "
@@ -107,7 +107,7 @@ def order_is_the_proportion() -> Claim:
         "The order is the proportion of inertia to damping, whatever the frequency.",
         verdict(holds=spread < _ROUND_OFF),
         "constant", float(ratios.mean()), "inertial over damping force", "below Eq. 8",
-        "omega b_eq/c_eq of Eq. 8 for M2 from 0.5 to 15 Hz: constant to 1e-6. A mass and a dashpot "
+        "ω b_eq/c_eq of Eq. 8 for M2 from 0.5 to 15 Hz: constant to 1e-6. A mass and a dashpot "
         "have a proportion that grows with frequency instead.",
     )
 
@@ -199,7 +199,7 @@ def linear_analysis() -> Claim:
     once = model.force(sine_motion(0.005, 2.0))
     twice = model.force(sine_motion(0.010, 2.0))
     deviation = float(np.max(np.abs(twice - 2.0 * once)) / np.max(np.abs(twice)))
-    left_out = ", ".join(model.nonlinear_terms)
+    left_out = ", ".join(name.replace("coulomb-", "Coulomb ") for name in model.nonlinear_terms)
     return Claim(
         "linear-analysis",
         "Transfer functions and eigenvalues apply to the fractional model, unlike the nonlinear "

@@ -80,7 +80,7 @@ def low_means_inertial() -> Claim:
             for name, (a, b) in signs.items()
         ),
         "elasticity", "abstract, section 4",
-        "Elasticities of f_low (Eq. 16) and of the corner c2/(2 pi b) above which inertia exceeds "
+        "Elasticities of f_low (Eq. 16) and of the corner c2/(2 π b) above which inertia exceeds "
         "viscous damping. A narrower channel lowers the first and raises the second; the piston "
         "moves the first alone.",
     )
