@@ -18,7 +18,7 @@ from discover.regression.term_count import (
 )
 from models.checks import Array, InputError, number, one_of
 
-_CRITERIA = ("bic", "ebic")
+_CRITERIA = ("ebic", "bic")
 _KEPT = 32  # subsets of each size among which every fold chooses
 
 
@@ -42,7 +42,7 @@ class BestSubset(BaseOptimizer):  # type: ignore[misc]
         Record of each row. Rows that `EnsembleOptimizer` draws singly (bagging) belong to no
         record any more: leave `groups` out there.
     criterion : str
-        "bic", or "ebic", which charges for the number of subsets besides.
+        "ebic", which charges for the number of subsets of each size, or "bic", which does not.
     effective_samples : float, optional
         Number of independent samples for the criterion. Where absent it is estimated from the
         residual's autocorrelation in time; with a triangle for rows it has to be given.
@@ -78,7 +78,7 @@ class BestSubset(BaseOptimizer):  # type: ignore[misc]
         nonnegative: Sequence[int] = (),
         exclusive: Sequence[Sequence[int]] = (),
         groups: ArrayLike | None = None,
-        criterion: str = "bic",
+        criterion: str = "ebic",
         effective_samples: float | None = None,
     ) -> None:
         # The search scales columns itself and its coefficients need no second fit.

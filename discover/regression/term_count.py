@@ -22,6 +22,7 @@ from discover.regression.best_subset import Subset, SubsetPath
 from models.checks import Array
 
 _ALONE = 1e-10  # share of a direction that other groups hold, below which they say nothing of it
+_WINDOW = 5.0  # correlation times over which the correlation is summed
 _ROUND_OFF = 1e-26  # of the energy: a misfit below it is zero
 
 
@@ -69,28 +70,26 @@ def leave_group_out(blocks: Sequence[Array], subset: Subset) -> LeftOut:
     ([9.0, 0.0, 9.0], [2.0, 8.0, 2.0])
     """
     chosen = list(subset.indices)
-    ends = np.cumsum([b.shape[0] for b in blocks])[:-1]
+    starts = np.concatenate(([0], np.cumsum([b.shape[0] for b in blocks])[:-1]))
     stacked = np.concatenate([b[:, chosen] for b in blocks])
-    target = np.concatenate([b[:, -1] for b in blocks])
-    errors = np.split(target - stacked @ subset.coefficients, ends)
-    total = float(sum(e @ e for e in errors))
+    error = np.concatenate([b[:, -1] for b in blocks]) - stacked @ subset.coefficients
+    own = np.add.reduceat(error**2, starts)
+    total = float(own.sum())
     if not chosen:
-        own = np.array([e @ e for e in errors])
         return LeftOut(total - own, own)
     norms = np.linalg.norm(stacked, axis=0)
-    bases = np.split(np.linalg.qr(stacked / np.where(norms > 0.0, norms, 1.0))[0], ends)
-    training, prediction = np.empty(len(blocks)), np.empty(len(blocks))
-    for g, (basis, error) in enumerate(zip(bases, errors, strict=True)):
-        share = basis.T @ error
-        values, vectors = np.linalg.eigh(np.eye(len(chosen)) - basis.T @ basis)
-        if values[0] < _ALONE:
-            training[g], prediction[g] = total - float(error @ error), np.inf
-            continue
-        change = vectors @ ((vectors.T @ share) / values)
-        outside = error + basis @ change
-        training[g] = max(total - float(error @ outside), 0.0)
-        prediction[g] = float(outside @ outside)
-    return LeftOut(training, prediction)
+    basis = np.linalg.qr(stacked / np.where(norms > 0.0, norms, 1.0))[0]
+    share = np.add.reduceat(basis * error[:, None], starts)
+    held = np.add.reduceat(basis[:, :, None] * basis[:, None, :], starts)
+    values, vectors = np.linalg.eigh(np.eye(len(chosen)) - held)
+    alone = values[:, 0] < _ALONE
+    along = np.einsum("gji,gj->gi", vectors, share)
+    change = along / np.where(alone[:, None], 1.0, values)
+    # In the eigenvectors' axes: e^T H e and |Q (I - Q^T Q)^-1 Q^T e|^2, sums of squares alone.
+    rise = np.sum(along * change, axis=1)
+    moved = np.sum((1.0 - values) * change**2, axis=1)
+    training = np.maximum(total - own - np.where(alone, 0.0, rise), 0.0)
+    return LeftOut(training, np.where(alone, np.inf, own + 2.0 * rise + moved))
 
 
 def by_leaving_out(path: SubsetPath, blocks: Sequence[Array]) -> TermCount:
@@ -128,14 +127,14 @@ def by_leaving_out(path: SubsetPath, blocks: Sequence[Array]) -> TermCount:
     for smaller in range(best):
         if np.isfinite(scores[smaller]):
             rise = errors[smaller, useful] - errors[best, useful]
-            if rise.sum() <= np.std(rise) * np.sqrt(rise.size):
+            if rise.sum() <= np.std(rise, ddof=1) * np.sqrt(rise.size):
                 size = smaller
                 break
     return TermCount(size, scores, "leave-group-out")
 
 
 def by_criterion(
-    path: SubsetPath, candidates: int, *, samples: float, criterion: str = "bic"
+    path: SubsetPath, candidates: int, *, samples: float, criterion: str = "ebic"
 ) -> TermCount:
     """Return the number of terms of least information criterion.
 
@@ -148,7 +147,7 @@ def by_criterion(
     samples : float
         Effective number of samples: fewer than rows where residuals are correlated in time.
     criterion : str
-        "bic", or "ebic", which charges for the number of subsets of each size besides.
+        "ebic", which charges for the number of subsets of each size, or "bic", which does not.
 
     Returns
     -------
@@ -169,8 +168,8 @@ def by_criterion(
 def effective_samples(residual: Array) -> float:
     """Return the number of independent samples that a correlated residual is worth.
 
-    The number of samples over the integral of the autocorrelation, summed while pairs of
-    neighbouring lags stay positive (C. J. Geyer, *Statistical Science* 7 (1992) 473-483).
+    The number of samples over the integrated autocorrelation time, summed up to five times itself
+    (A. D. Sokal, in *Functional Integration*, 1997, 131-192).
 
     Parameters
     ----------
@@ -197,8 +196,7 @@ def effective_samples(residual: Array) -> float:
         return float(size)
     spectrum = np.fft.rfft(centred, 2 * size)
     correlation = np.fft.irfft(np.abs(spectrum) ** 2)[:size] / energy
-    even = size - size % 2
-    pairs = correlation[:even:2] + correlation[1:even:2]
-    stop = int(np.argmax(pairs <= 0.0)) if np.any(pairs <= 0.0) else pairs.size
-    time = 2.0 * float(pairs[:stop].sum()) - 1.0
+    times = 2.0 * np.cumsum(correlation) - 1.0
+    within = np.arange(size) >= _WINDOW * times
+    time = float(times[np.argmax(within)]) if within.any() else float(size)
     return float(size / min(max(time, 1.0), size))
