@@ -22,11 +22,13 @@ from models.terms import find_term
 _GRID = 61
 _TINY = 1e-12
 MOST_DELAY = 5e-3  # s: channels of one rig are not further apart; more is memory of the device
-_TWIN = 0.05  # closer than this, the difference of two columns is another shape's slope
-_TWINS = {
-    "fractional-derivative": {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0},
-    "power-law-damping": {"viscous-damping": 1.0, "quadratic-damping": 2.0},
+SAME_SHAPE = 0.05
+"""Closer than this to a plain term's shape, two columns differ by little but their slope."""
+PLAIN_SHAPES: dict[str, dict[float, str]] = {
+    "fractional-derivative": {0.0: "stiffness", 1.0: "viscous-damping", 2.0: "inertia"},
+    "power-law-damping": {1.0: "viscous-damping", 2.0: "quadratic-damping"},
 }
+"""Shapes at which a family is a plain term."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +109,9 @@ def _signs_hold(ids: Sequence[str], coefficients: Array) -> bool:
 def _distinct(support: Support, shapes: tuple[float, ...]) -> bool:
     """Return False where a free shape sits on a term of integer order that is there already."""
     return not any(
-        plain in support.plain and abs(shape - value) < _TWIN
+        plain in support.plain and abs(shape - value) < SAME_SHAPE
         for identifier, shape in zip(support.free, shapes, strict=True)
-        for plain, value in _TWINS[identifier].items()
+        for value, plain in PLAIN_SHAPES[identifier].items()
     )
 
 

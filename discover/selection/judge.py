@@ -9,7 +9,13 @@ import numpy as np
 
 from discover.library.dictionary import Dictionary
 from discover.regression.covariance import Uncertainty, uncertainty
-from discover.regression.support import ProfiledFit, Support, SupportFit
+from discover.regression.support import (
+    PLAIN_SHAPES,
+    SAME_SHAPE,
+    ProfiledFit,
+    Support,
+    SupportFit,
+)
 from discover.selection.discrepancy import with_discrepancy
 from discover.selection.evidence import Contest, contest, name_of
 from discover.selection.materiality import Materiality, record_power, relative_triangle
@@ -164,14 +170,20 @@ def _predictive(
     """
     engine = ProfiledFit(relative_triangle(windows), dictionary)
     fits = [engine.fit(s.fit.support) for s in result.scored]
-    fits = [f for f in fits if f.valid] or fits
+    fits = [f for f in fits if f.valid and _identified(f, dictionary)] or fits
     names = [name_of(f) for f in fits]
     predictions = leave_out(windows, fits)
     share = predictions.noise_share
     parameters = np.array([f.support.parameters for f in fits])
     smallest = predictions.parsimonious(parameters)
-    near = np.flatnonzero(parameters <= parameters[smallest] + 1)
-    wins = predictions.only(near).wins([names[i] for i in near], np.random.default_rng(seed))
+    near = [i for i, p in enumerate(parameters) if p <= parameters[smallest] + 1]
+    standing = {}
+    for name in dict.fromkeys(names[i] for i in near):
+        own = [i for i in near if names[i] == name]
+        standing[name] = own[predictions.only(own).parsimonious(parameters[own])]
+    wins = predictions.only(list(standing.values())).wins(
+        list(standing), np.random.default_rng(seed)
+    )
     mixed = {
         name: share * result.probabilities.get(name, 0.0) + (1.0 - share) * wins.get(name, 0.0)
         for name in STRUCTURES
@@ -180,9 +192,19 @@ def _predictive(
     if share > _NOISE_LIMITED:
         scored = result.best(leading) or result.scored[0]
         return scored.fit.support, mixed, True
-    own = [int(i) for i in near if names[i] == leading] or [smallest]
-    chosen = own[predictions.only(own).parsimonious(parameters[own])]
-    return fits[chosen].support, mixed, False
+    return fits[standing.get(leading, smallest)].support, mixed, False
+
+
+def _identified(fit: SupportFit, dictionary: Dictionary) -> bool:
+    """Return False where a free shape is at its bound, or is a plain term's to within little."""
+    for identifier, shape in zip(fit.support.free, fit.shapes, strict=False):
+        found = dictionary.family(identifier)
+        if found is None:
+            continue
+        ends = (found[0].lower, found[0].upper)
+        if min(abs(shape - v) for v in (*ends, *PLAIN_SHAPES[identifier])) < SAME_SHAPE:
+            return False
+    return True
 
 
 def _clusters(windows: Sequence[WindowRows]) -> int:
