@@ -28,14 +28,16 @@ def open_parquet(data: bytes, name: str) -> Source:
         file = parquet.ParquetFile(io.BytesIO(data))
         headers = tuple(str(h).strip() for h in file.schema_arrow.names)
     except (pa.ArrowException, OSError) as error:
-        raise InputError(name, expected="a Parquet file", found=_first_line(error)) from None
+        raise InputError(
+            "content", where=name, expected="a Parquet file", found=_first_line(error)
+        ) from None
 
     def read(indices: Sequence[int]) -> list[Array]:
         try:
             table = file.read(columns=[file.schema_arrow.names[i] for i in indices])
         except (pa.ArrowException, OSError) as error:
             raise InputError(
-                name, expected="a whole Parquet file", found=_first_line(error)
+                "content", where=name, expected="a whole Parquet file", found=_first_line(error)
             ) from None
         result = []
         for index in indices:
@@ -61,13 +63,17 @@ def open_npz(data: bytes, name: str) -> Source:
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as archive:
             if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise InputError(name, expected="an .npz archive", found="a single array")
+                raise InputError(
+                    "content", where=name, expected="an .npz archive", found="a single array"
+                )
             for key in archive.files:
                 arrays[key] = archive[key]
     except InputError:
         raise
     except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile, TypeError) as error:
-        raise InputError(name, expected="an .npz archive", found=_first_line(error)) from None
+        raise InputError(
+            "content", where=name, expected="an .npz archive", found=_first_line(error)
+        ) from None
     return from_arrays(name, arrays)
 
 
@@ -83,10 +89,15 @@ def open_mat(data: bytes, name: str) -> Source:
         content = loadmat(io.BytesIO(data), simplify_cells=True)  # type: ignore[arg-type]  # stubs
     except NotImplementedError:
         raise InputError(
-            name, expected="a .mat file saved with -v7 or older", found="version 7.3 (HDF5)"
+            "content",
+            where=name,
+            expected="a .mat file saved with -v7 or older",
+            found="version 7.3 (HDF5)",
         ) from None
     except Exception as error:  # scipy's parser lets errors of many kinds through
-        raise InputError(name, expected="a MATLAB file", found=_first_line(error)) from None
+        raise InputError(
+            "content", where=name, expected="a MATLAB file", found=_first_line(error)
+        ) from None
     flat: dict[str, object] = {}
     _flatten({k: v for k, v in content.items() if not k.startswith("__")}, "", flat)
     return from_arrays(name, flat)

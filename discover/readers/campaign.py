@@ -131,9 +131,13 @@ def _bytes_of(folder: Path, name: str, *, where: str) -> bytes:
             found = "a folder" if target.is_dir() else "nothing there"
             if not target.exists():
                 found += nearest(name, [p.name for p in root.iterdir()])
-    except (OSError, ValueError, RuntimeError) as error:
+    except OSError as error:
+        found = error.strerror or "an unreadable file"
+    except (ValueError, RuntimeError) as error:  # a zero byte in the name, a loop of links
         found = str(error)
-    raise InputError(f"file {name!r}", expected="in the campaign folder", found=found, where=where)
+    raise InputError(
+        f"file {name[:80]!r}", expected="in the campaign folder", found=found, where=where
+    )
 
 
 def _open(data: bytes, entry: Entry) -> Source:

@@ -110,13 +110,7 @@ def read_columns(
         if index is not None:
             found[quantity] = index
         elif quantity not in may_lack:
-            plain = [_plain(_split(h)[0]) for h in source.headers]
-            raise InputError(
-                "columns",
-                expected=f"to hold {wanted!r}",
-                found=", ".join(source.headers)[:200] + nearest(wanted, plain),
-                where=source.name,
-            )
+            raise missing_column(source, quantity, wanted)
     chosen = {}
     for quantity, index in found.items():
         chosen[quantity] = _unit_of(source, index, quantity, units.get(quantity))
@@ -138,6 +132,19 @@ def read_columns(
         if near and near[0] not in found:
             unused[header] = near[0]
     return Columns(values, raw[list(found).index("time")], tuple(assumed), unused)
+
+
+def missing_column(source: Source, quantity: str, wanted: str, *, instead: str = "") -> InputError:
+    """Return the error that says which column is missing and what is there instead."""
+    by_name = {_plain(_split(h)[0]): h for h in source.headers}
+    close = difflib.get_close_matches(_plain(wanted), list(by_name), n=1, cutoff=0.6)
+    hint = f"; is it {by_name[close[0]]!r}? [columns] can say so" if close else ""
+    return InputError(
+        f"column {wanted!r}" + (f" for {quantity}" if wanted != quantity else ""),
+        expected="among the headers" + instead,
+        found=", ".join(source.headers)[:200] + hint,
+        where=source.name,
+    )
 
 
 def _unit_of(source: Source, index: int, quantity: str, stated: str | None) -> str | None:

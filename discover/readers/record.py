@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.readers.columns import assumed_units, read_columns
+from discover.readers.columns import QUANTITIES, assumed_units, missing_column, read_columns
 from discover.readers.consistency import derivative_agreement
 from discover.readers.labels import check_labels
 from discover.readers.sampling import jitter_text, regular
@@ -15,7 +15,7 @@ from discover.readers.source import Source
 from discover.records import Finding, Record
 from models.checks import Array, InputError
 
-_OPTIONAL = ("velocity", "acceleration", "temperature", "base_acceleration", "applied_force")
+_MAY_LACK = tuple(name for name in QUANTITIES if name not in ("time", "force"))
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,14 @@ def read_record(
     InputError
         On anything that leaves no usable record.
     """
-    labelled = entry.frequency is not None and entry.amplitude is not None
-    may_lack = (*_OPTIONAL, "displacement") if labelled else _OPTIONAL
-    columns = read_columns(source, names=names, units=units, may_lack=may_lack)
+    columns = read_columns(source, names=names, units=units, may_lack=_MAY_LACK)
+    if "displacement" not in columns.values and None in (entry.frequency, entry.amplitude):
+        raise missing_column(
+            source,
+            "displacement",
+            names.get("displacement", "displacement"),
+            instead=", or the record's frequency and amplitude given",
+        )
     findings = [
         Finding(
             "warning",
@@ -83,7 +88,7 @@ def read_record(
     for name in ("displacement", "force"):
         if name in values and not np.ptp(values[name]) > 0.0:
             found = f"{values[name][0]:.6g} throughout"
-            raise InputError(name, expected="to vary", found=found, where=entry.file)
+            raise InputError(name, expected="varying", found=found, where=entry.file)
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
     if sampled.jitter:
         level, text = jitter_text(sampled.jitter, step)

@@ -62,7 +62,7 @@ def from_arrays(name: str, arrays: dict[str, object]) -> Source:
             for index in range(vector.shape[1]):
                 columns[f"{key}(:,{index + 1})"] = vector[:, index]
     if not columns:
-        raise InputError(name, expected="a file of numeric vectors", found="none in it")
+        raise InputError("content", expected="numeric vectors", found="none", where=name)
     headers = tuple(columns)
 
     def read(indices: Sequence[int]) -> list[Array]:

@@ -15,6 +15,7 @@ from discover.readers.source import Source
 from models.checks import Array, InputError
 
 _LINE_END = re.compile(rb"\r\n|\n|\r")
+_LARGE = 16_000_000  # bytes from which threads pay
 _EMPTY = ("", "nan", "na", "n/a", "null", "none", "-", "#n/a")
 
 
@@ -45,16 +46,16 @@ def open_text(data: bytes, name: str) -> Source:
         data = _decode(data, "utf-16", name).encode()
     data = data.removeprefix(b"\xef\xbb\xbf")
     if not data.strip():
-        raise InputError(name, expected="a header line and samples", found="an empty file")
+        raise _content_error("a header line and samples", "an empty file", name)
     if b"\0" in data[:4096]:
-        raise InputError(name, expected="a text file", found="binary data")
+        raise _content_error("text", "binary data", name)
     line, number, start = _header_line(data, name)
     delimiter = _delimiter(line, name)
     headers = tuple(h.strip() for h in next(csv.reader([line], delimiter=delimiter)))
     _check_headers(headers, name, number)
     body = data[start:]
     if not body.strip():
-        raise InputError(name, expected="samples below the header", found="none")
+        raise _content_error("a header line and samples", "only a header", name)
     decimal = "," if delimiter != "," and b"," in body[:2000] else "."
 
     def read(indices: Sequence[int]) -> list[Array]:
@@ -72,11 +73,15 @@ def open_text(data: bytes, name: str) -> Source:
     return Source(name, headers, read, place)
 
 
+def _content_error(expected: str, found: str, name: str) -> InputError:
+    return InputError("content", expected=expected, found=found, where=name)
+
+
 def _decode(data: bytes, encoding: str, name: str) -> str:
     try:
         return data.decode(encoding)
     except UnicodeDecodeError as error:
-        raise InputError(name, expected=f"text in {encoding}", found=str(error.reason)) from None
+        raise _content_error(f"text in {encoding}", str(error.reason), name) from None
 
 
 def _header_line(data: bytes, name: str) -> tuple[str, int, int]:
@@ -93,7 +98,7 @@ def _header_line(data: bytes, name: str) -> tuple[str, int, int]:
             except UnicodeDecodeError:
                 return raw.decode("latin-1"), number, after
         start = after
-    raise InputError(name, expected="a header line and samples", found="only comments")
+    raise _content_error("a header line and samples", "only comments", name)
 
 
 def _delimiter(line: str, name: str) -> str:
@@ -144,7 +149,7 @@ def _read_fast(
     try:
         table = pa_csv.read_csv(
             io.BytesIO(body),
-            read_options=pa_csv.ReadOptions(column_names=names, use_threads=False),
+            read_options=pa_csv.ReadOptions(column_names=names, use_threads=len(body) > _LARGE),
             parse_options=pa_csv.ParseOptions(delimiter=delimiter),
             convert_options=pa_csv.ConvertOptions(
                 include_columns=wanted,
@@ -169,7 +174,7 @@ def _rows(
     reader = csv.reader(lines, delimiter=delimiter)
     try:
         for fields in reader:
-            if fields:
+            if len(fields) > 1 or (fields and fields[0].strip()):
                 yield header_number + reader.line_num, fields
     except csv.Error as error:
         where = f"{name} line {header_number + reader.line_num}"
@@ -189,10 +194,11 @@ def _read_slow(
     columns: list[list[float]] = [[] for _ in indices]
     for at, fields in _rows(body, delimiter, number, name):
         if len(fields) != len(headers):
+            more = " (decimal commas need semicolons or tabs between columns)"
             raise InputError(
                 "number of columns",
                 expected=f"{len(headers)} as in the header",
-                found=str(len(fields)),
+                found=str(len(fields)) + (more if len(fields) > len(headers) else ""),
                 where=f"{name} line {at}",
             )
         for column, index in zip(columns, indices, strict=True):

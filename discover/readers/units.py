@@ -29,6 +29,16 @@ SI_UNITS = {
 """Every kind of quantity that a campaign may hold, with its SI unit."""
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![.\d])")
+_OTHER = {
+    "m^2/s": "kinematic viscosity",
+    "m^2": "area",
+    "Pa": "pressure",
+    "N*m": "torque or energy",
+    "V": "voltage",
+    "A": "current",
+    "N*s/m": "damping",
+    "W": "power",
+}
 # A power only of a unit and of one digit: pint would else work on 9^9^9^9 for ever.
 _UNIT = re.compile(
     r"(?!.*[\d.]\s*(?:\^|\*\*))(?!.*(?:\^|\*\*)\s*[+-]?\d\d)(?:[^\W\d]|[°%(]|1?\s*/)[\w\s*/^().+-]*"
@@ -87,10 +97,13 @@ def _conversion(text: str, kind: str) -> _Conversion:
 
 
 def _dimension(unit: Any) -> str:
-    """Return what a unit measures, in words where there is one of the listed kinds."""
-    for kind, name in SI_UNITS.items():
+    """Return what a unit measures, in words where it is a common kind."""
+    names = [(name, kind) for kind, name in SI_UNITS.items()] + list(_OTHER.items())
+    for name, kind in names:
         if unit.dimensionality == _registry().parse_units(name).dimensionality:
             return kind
+    if unit.dimensionless:
+        return "nothing (dimensionless)"
     return str(unit.dimensionality).replace("[", "").replace("]", "")
 
 
