@@ -14,6 +14,7 @@ from models.rig.effects import Effect
 from models.rig.effects.effect import Values
 
 _PRECISION = 5e-3
+_JUMP = 0.03
 _EVALUATIONS = 40
 
 
@@ -87,40 +88,48 @@ def hide(
 
 
 def _search(reached: Callable[[float], float], size: float, start: float, *, name: str) -> float:
-    """Return the amount at which `reached` is `size`, by bracketing and regula falsi in logs."""
-    low = high = start
-    value = reached(start)
-    below, above = value, value
-    for _ in range(_EVALUATIONS):
-        if abs(value - size) <= _PRECISION * size:
-            return high if value >= size else low
-        if value < size:
-            low, below = high, value
-            high = high * 1.6
-            value = above = reached(high)
-            if value >= size:
-                break
+    """Return the amount at which `reached` is `size`: bracketed, then the Illinois method in logs.
+
+    Where impacts make the size jump by a little between neighbouring amounts, the nearest will do.
+    """
+    tried: dict[float, float] = {}
+
+    def off(amount: float) -> float:
+        value = max(reached(math.exp(amount)), 1e-12 * size)
+        tried[amount] = abs(value / size - 1.0)
+        return math.log(value / size)
+
+    low = high = math.log(start)
+    below = above = off(low)
+    stride = 0.5
+    while below > 0.0 or above < 0.0:
+        if len(tried) > _EVALUATIONS:
+            raise InputError(f"size of {name}", expected="one that it can reach", found=f"{size}")
+        if above < 0.0:
+            low, below = high, above
+            high += stride
+            above = off(high)
         else:
-            high, above = low, value
-            low = low / 1.6
-            value = below = reached(low)
-            if value < size:
-                break
-    else:
-        raise InputError(f"size of {name}", expected="one that it can reach", found=f"{size}")
-    for _ in range(_EVALUATIONS):
-        for side, reading in ((low, below), (high, above)):
-            if abs(reading - size) <= _PRECISION * size:
-                return side
-        share = (size - below) / (above - below) if above > below else 0.5
-        amount = low * (high / low) ** min(max(share, 0.1), 0.9)
-        value = reached(amount)
-        if value < size:
-            low, below = amount, value
+            high, above = low, below
+            low -= stride
+            below = off(low)
+        stride *= 1.3
+    side = 0
+    while min(tried.values()) > _PRECISION and len(tried) < 2 * _EVALUATIONS and high - low > 1e-4:
+        share = below / (below - above) if side < 3 and side > -3 else 0.5
+        middle = low + share * (high - low)
+        value = off(middle)
+        if value < 0.0:
+            low, below, side = middle, value, min(side, 0) - 1
+            above = 0.5 * above if side < -1 else above
         else:
-            high, above = amount, value
-    raise InputError(
-        f"size of {name}",
-        expected="one that it can reach",
-        found=f"{size} (it jumps from {below:.4g} to {above:.4g})",
-    )
+            high, above, side = middle, value, max(side, 0) + 1
+            below = 0.5 * below if side > 1 else below
+    best = min(tried, key=lambda amount: tried[amount])
+    if tried[best] > _JUMP:
+        raise InputError(
+            f"size of {name}",
+            expected="one that it can reach",
+            found=f"{size} ({100.0 * tried[best]:.1f} % off at best)",
+        )
+    return math.exp(best)

@@ -108,8 +108,11 @@ def _start_play(scales: Scales) -> float:
 def _make_up(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # One chamber tears at its vapour pressure: the void opens at constant force while a make-up
     # valve lets oil in, and what is left of it must close before the force returns.
+    limit = 1.0 / amount
+    if float(np.min(bench.stiff_fluid)) > -0.95 * limit:
+        return np.zeros(force.size)
     stiffness, damping = _contact(bench, values)
-    edge = -1.0 / (amount * stiffness)
+    edge = -limit / stiffness
     line = np.array([edge - _WIDE, edge, _WIDE])
     load = stiffness * np.array([edge - 1e-9 * _WIDE, edge, _WIDE])
     return _inside(bench, Element(line, load, damping, values["refill_time"], edge))
