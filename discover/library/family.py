@@ -8,12 +8,20 @@ shape stays continuous at a cost that no longer depends on the number of samples
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from models.checks import Array
+
+
+@cache
+def _to_coefficients(count: int) -> Array:
+    """Return the matrix from values at the nodes to Chebyshev coefficients."""
+    unit = -np.cos(np.pi * np.arange(count) / (count - 1))
+    return np.asarray(np.linalg.inv(chebyshev.chebvander(unit, count - 1)))
 
 
 @dataclass(frozen=True)
@@ -53,17 +61,14 @@ class Family:
         values = np.atleast_1d(np.asarray(value, dtype=np.float64))
         return (2.0 * values - self.lower - self.upper) / (self.upper - self.lower)
 
-    def _to_coefficients(self) -> Array:
-        unit = -np.cos(np.pi * np.arange(self.count) / (self.count - 1))
-        return np.asarray(np.linalg.inv(chebyshev.chebvander(unit, self.count - 1)))
-
     def weights(self, values: ArrayLike) -> Array:
         """Return (count, G) weights that make columns at `values` from those at the nodes."""
-        basis = chebyshev.chebvander(self._unit(values), self.count - 1)
-        return np.asarray((basis @ self._to_coefficients()).T)
+        angle = np.arccos(np.clip(self._unit(values), -1.0, 1.0))
+        basis = np.cos(np.arange(self.count)[:, None] * angle)
+        return np.asarray(_to_coefficients(self.count).T @ basis)
 
     def slope(self, value: float) -> Array:
         """Return (count,) weights of the derivative of the column with respect to the value."""
         rising = chebyshev.chebder(np.eye(self.count), axis=0) * (2.0 / (self.upper - self.lower))
         basis = chebyshev.chebvander(self._unit(value), self.count - 2)
-        return np.asarray((basis @ rising @ self._to_coefficients())[0])
+        return np.asarray((basis @ rising @ _to_coefficients(self.count))[0])

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import minimize, minimize_scalar
+from scipy.optimize import minimize
 
 from discover.library.dictionary import DELAY, Dictionary
 from discover.library.family import Family
@@ -20,6 +20,8 @@ from models.constitutive import FittedTerm
 from models.terms import find_term
 
 _GRID = 61
+_FINE = 17
+_REFINEMENTS = 3
 _TINY = 1e-12
 MOST_DELAY = 5e-3  # s: channels of one rig are not further apart; more is memory of the device
 SAME_SHAPE = 0.05
@@ -134,34 +136,29 @@ class ProfiledFit:
     def __init__(self, triangle: Triangle, dictionary: Dictionary) -> None:
         self.triangle = triangle
         self.dictionary = dictionary
-        self._grids: dict[str, tuple[Array, Array]] = {}
         self.energy = float(triangle.target @ triangle.target)
 
-    def _grid(self, identifier: str) -> tuple[Array, Array]:
-        """Return trial shapes (G,) and their columns (m, G) on the triangle."""
-        if identifier not in self._grids:
-            family, where = _family(identifier, self.dictionary)
-            values = np.linspace(family.lower, family.upper, _GRID)
-            self._grids[identifier] = (
-                values,
-                self.triangle.columns[:, where] @ family.weights(values),
-            )
-        return self._grids[identifier]
+    def _without(self, identifier: str, base: Array) -> tuple[Array, Array, Array]:
+        """Return a family's nodes' columns and the target with the base taken out, reduced.
 
-    def profile(self, identifier: str, base: Array) -> tuple[Array, Array]:
-        """Return trial shapes (G,) and the squared misfit beside base columns (m, k) at each."""
-        values, columns = self._grid(identifier)
-        target = self.triangle.target
+        The reduced columns (n, n) and target (n,) have the products of the full ones; the last
+        value is the target's misfit that no member of the family can change.
+        """
+        _, where = _family(identifier, self.dictionary)
+        both = np.column_stack([self.triangle.columns[:, where], self.triangle.target])
         if base.shape[1]:
             norms = np.linalg.norm(base, axis=0)
             q, _ = np.linalg.qr(base / np.where(norms > 0.0, norms, 1.0))
-            target = target - q @ (q.T @ target)
-            left = columns - q @ (q.T @ columns)
-        else:
-            left = columns
-        power = np.sum(left**2, axis=0)
-        gain = (left.T @ target) ** 2 / np.maximum(power, _TINY * np.sum(columns**2, axis=0))
-        return values, float(target @ target) - gain
+            both = both - q @ (q.T @ both)
+        reduced = np.linalg.qr(both, mode="r")
+        count = both.shape[1] - 1
+        return reduced[:count, :count], reduced[:count, count], reduced[count:, count]
+
+    def profile(self, identifier: str, base: Array) -> tuple[Array, Array]:
+        """Return trial shapes (G,) and the squared misfit beside base columns (m, k) at each."""
+        family, _ = _family(identifier, self.dictionary)
+        values = np.linspace(family.lower, family.upper, _GRID)
+        return values, _misfits(family, values, *self._without(identifier, base))
 
     def fit(self, support: Support) -> SupportFit:
         """Return the least-squares fit of a support.
@@ -205,16 +202,15 @@ class ProfiledFit:
         if not free:
             return ()
         if len(free) == 1:
-            values, misfit = self.profile(free[0], base)
-            return (self._refine_one(free[0], base, values, misfit),)
-        first_values, first_columns = self._grid(free[0])
-        table = np.array(
-            [
-                self.profile(free[1], np.column_stack([base, first_columns[:, g]]))[1]
-                for g in range(first_values.size)
-            ]
-        )
-        second_values = self._grid(free[1])[0]
+            return (self._search_one(free[0], base),)
+        family, where = _family(free[0], self.dictionary)
+        first_values = np.linspace(family.lower, family.upper, _GRID)
+        first_columns = self.triangle.columns[:, where] @ family.weights(first_values)
+        profiles = [
+            self.profile(free[1], np.column_stack([base, column])) for column in first_columns.T
+        ]
+        table = np.array([misfit for _, misfit in profiles])
+        second_values = profiles[0][0]
         i, j = np.unravel_index(int(table.argmin()), table.shape)
         start = np.array([first_values[i], second_values[j]])
         bounds = [(v[0], v[-1]) for v in (first_values, second_values)]
@@ -231,21 +227,36 @@ class ProfiledFit:
         )
         return (float(best.x[0]), float(best.x[1]))
 
-    def _refine_one(self, identifier: str, base: Array, values: Array, misfit: Array) -> float:
+    def _search_one(self, identifier: str, base: Array) -> float:
+        """Return the best shape: a grid, refined three times around its least point."""
+        family, _ = _family(identifier, self.dictionary)
+        without = self._without(identifier, base)
+        values = np.linspace(family.lower, family.upper, _GRID)
+        misfit = _misfits(family, values, *without)
+        for _ in range(_REFINEMENTS):
+            g = int(misfit.argmin())
+            low, high = values[max(g - 1, 0)], values[min(g + 1, values.size - 1)]
+            values = np.linspace(low, high, _FINE)
+            misfit = _misfits(family, values, *without)
         g = int(misfit.argmin())
-        family, where = _family(identifier, self.dictionary)
-        columns = self.triangle.columns[:, where]
+        if 0 < g < values.size - 1:
+            before, here, after = misfit[g - 1 : g + 2]
+            curvature = before - 2.0 * here + after
+            if curvature > 0.0:
+                shift = 0.5 * (before - after) / curvature
+                return float(values[g] + shift * (values[1] - values[0]))
+        return float(values[g])
 
-        def misfit_at(value: float) -> float:
-            column = columns @ family.weights(value)
-            return solve(np.column_stack([column, base]), self.triangle.target)[1]
 
-        low, high = values[max(g - 1, 0)], values[min(g + 1, values.size - 1)]
-        best = minimize_scalar(
-            misfit_at, bounds=(low, high), method="bounded", options={"xatol": 1e-7}
-        )
-        ends = [(misfit_at(v), float(v)) for v in (low, high) if v in (values[0], values[-1])]
-        return min([(float(best.fun), float(best.x)), *ends])[1]
+def _misfits(
+    family: Family, values: Array, columns: Array, target: Array, rest: Array
+) -> Array:
+    """Return the squared misfit at each value of a family's shape, (G,)."""
+    trial = columns @ family.weights(values)
+    power = np.sum(trial**2, axis=0)
+    least = _TINY * max(float(np.sum(columns**2)) / max(columns.shape[1], 1), 1e-300)
+    gain = (target @ trial) ** 2 / np.maximum(power, least)
+    return np.asarray(float(target @ target) + float(rest @ rest) - gain)
 
 
 def fitted_terms(fit: SupportFit, dictionary: Dictionary) -> tuple[FittedTerm, ...]:

@@ -26,7 +26,7 @@ from models.checks import Array
 
 _ROUNDS = 4
 _CROSS_CHECKED = 4  # records from which they check one another, and evidence alone decides
-_NOISE_LIMITED = 0.5  # share of noise in the best prediction's error
+_NOISE_LIMITED = (0.3, 0.7)  # share of noise in the error: below it models err, above only noise
 _KEPT = 120
 _KEPT_OF_EACH = 3
 
@@ -173,7 +173,8 @@ def _predictive(
     fits = [f for f in fits if f.valid and _identified(f, dictionary)] or fits
     names = [name_of(f) for f in fits]
     predictions = leave_out(windows, fits)
-    share = predictions.noise_share
+    low, high = _NOISE_LIMITED
+    share = float(np.clip((predictions.noise_share - low) / (high - low), 0.0, 1.0))
     parameters = np.array([f.support.parameters for f in fits])
     smallest = predictions.parsimonious(parameters)
     near = [i for i, p in enumerate(parameters) if p <= parameters[smallest] + 1]
@@ -189,7 +190,7 @@ def _predictive(
         for name in STRUCTURES
     }
     leading = max(mixed, key=lambda name: mixed[name])
-    if share > _NOISE_LIMITED:
+    if share > 0.5:
         scored = result.best(leading) or result.scored[0]
         return scored.fit.support, mixed, True
     return fits[standing.get(leading, smallest)].support, mixed, False
