@@ -19,7 +19,7 @@ def error_by_record(data: StudyFigureData) -> str | None:
     if not records:
         return None
     with house_style():
-        figure = new_figure(1120, 300)
+        figure = new_figure(min(1120, max(420, 160 + 34 * len(records))), 300)
         axes = figure.add_subplot()
         axes.set_yscale("log")
         floors = [(i, r.noise_percent) for i, r in enumerate(records) if r.noise_percent]

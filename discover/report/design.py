@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from discover.plots.design_front import design_front
 from discover.report.environment import render
+from discover.report.verdict import named_line
 from discover.report.words import listed, significant
 
 _ROWS = (
@@ -101,7 +102,7 @@ def design_report(document: Mapping[str, Any], figures: Mapping[str, str], *, co
         for convention in ("paper", "standard")
     ]
     buys = sorted(document["elasticities"].items(), key=lambda item: -abs(item[1]))
-    verdict = [line.partition(": ")[::2] for line in design_lines(document)]
+    verdict = [named_line(line) for line in design_lines(document)]
     return render(
         "design.html",
         command=command,

@@ -77,6 +77,7 @@ def environment() -> jinja2.Environment:
         band_range=words.band_range,
         not_ruled_out=not_ruled_out,
         prose=prose,
+        spread=words.spread,
         unit=unit,
         shape=shape,
     )

@@ -13,7 +13,7 @@ from discover.plots.loops import loops, representative
 from discover.plots.probabilities import probability_bars
 from discover.plots.record_map import record_map
 from discover.report.environment import render
-from discover.report.verdict import boundary_text, verdict_lines
+from discover.report.verdict import boundary_text, named_line, verdict_lines
 from discover.report.words import percent, significant
 
 
@@ -63,7 +63,7 @@ def study_report(
         for i, r in enumerate(shown, start=1)
     ]
     boundaries = [boundary_text(b, document) for b in document.get("boundaries", ())]
-    verdict = [_split(line) for line in verdict_lines(document)]
+    verdict = [named_line(line) for line in verdict_lines(document)]
     check = {"boundary_dean": None, "amplitude_exponent": None, "to_decide": None}
     return render(
         "study.html",
@@ -84,11 +84,6 @@ def study_report(
         check={**check, **document["dean_check"]},
         next_test=_next(document),
     )
-
-
-def _split(line: str) -> tuple[str, str]:
-    name, _, text = line.partition(": ")
-    return name, text[:1].upper() + text[1:]
 
 
 def _heading(record: RecordCurves) -> str:

@@ -44,8 +44,9 @@ def structure_line(document: Mapping[str, Any]) -> str:
     if not bands:
         return "Structure: no band could be formed from these records."
     if len(bands) == 1:
-        found = f"one band, {_structure(bands[0])}"
-        return f"Structure: {found} in all of {counted(len(bands[0]['records']), 'record')}."
+        count = len(bands[0]["records"])
+        where = "the one record" if count == 1 else f"all {counted(count, 'record')}"
+        return f"Structure: one band, {_structure(bands[0])} in {where}."
     parts = [f"{_structure(b)} {band_range(b, coordinate)}" for b in bands]
     number = _NUMBERS.get(len(bands), str(len(bands)))
     return f"Structure: {number} bands of {coordinate_name(document)}: {listed(parts)}."
@@ -155,3 +156,15 @@ def boundary_text(boundary: Mapping[str, Any], document: Mapping[str, Any]) -> s
     if width:
         text += f"; a gradual change, {significant(width, 2)} wide"
     return text
+
+
+def named_line(line: str) -> tuple[str, str]:
+    """Return a line of a verdict as its name and its sentence.
+
+    Examples
+    --------
+    >>> named_line("Structure: one band")
+    ('Structure', 'One band')
+    """
+    name, _, text = line.partition(": ")
+    return name, text[:1].upper() + text[1:]

@@ -169,3 +169,15 @@ def band_range(band: Mapping[str, Any], coordinate: str) -> str:
         f"{coordinate_value(float(lower or 0.0), coordinate)} to "
         f"{coordinate_value(float(upper or 0.0), coordinate)}"
     )
+
+
+def spread(ends: Sequence[float]) -> str:
+    """Return a range, or its one value where both ends read the same.
+
+    Examples
+    --------
+    >>> spread([0.1, 15.0]), spread([0.306, 0.306])
+    ('0.1 to 15', '0.306')
+    """
+    low, high = (significant(e, 3) for e in ends)
+    return low if low == high else f"{low} to {high}"

@@ -35,7 +35,7 @@ def test_every_verb_is_listed_with_what_it_does(capsys):
         (["discover", "--coordinate", "x"], "--coordinate: coordinate must be one of dean, speed"),
         (["discover", "--orders", "0:2"], "--orders: grid must be start:stop:step or a,b,c"),
         (["discover", "--terms", "inertia,,x"], "--terms"),
-        (["synth", "out", "--device", "device-11"], "one of device-12, device-10, got device-11"),
+        (["synth", "out", "--device", "device-11"], "campaign's folder, got device-11"),
         (["synth", "out", "--device", "device-12", "--hide", "stiffness"], "EFFECT=SIZE"),
         (["synth", "out", "--device", "device-12", "--noise", "much"], "--noise"),
         (["synth", "out", "--device", "device-12", "--model", "none.json"], "or a model.json"),
@@ -60,7 +60,7 @@ def test_an_interrupt_exits_130(capsys, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(app.app.registered_commands[0], "callback", interrupted)
-    assert main(["discover"]) == 130
+    assert main([app.app.registered_commands[0].name]) == 130
     out, _ = capsys.readouterr()
     assert out == ""
 
@@ -71,7 +71,7 @@ def test_a_fault_of_the_program_is_told_apart_from_a_failed_check(capsys, monkey
 
     monkeypatch.delenv("INERTER_DEBUG", raising=False)
     monkeypatch.setattr(app.app.registered_commands[0], "callback", broken)
-    assert main(["discover"]) == 70
+    assert main([app.app.registered_commands[0].name]) == 70
     assert "ZeroDivisionError: by zero" in capsys.readouterr().err
 
 

@@ -1,0 +1,38 @@
+"""What the design's loop found, in a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from discover.report.words import counted, percent, significant
+
+
+def serves_text(loop: Mapping[str, Any]) -> str:
+    """Return whether one fractional model serves the designed device's whole range, and how well.
+
+    Parameters
+    ----------
+    loop : mapping
+        As `close_loop` collects it.
+
+    Examples
+    --------
+    >>> band = {"structure": "FOIM"}
+    >>> fit = {"order": 1.9, "error_percent": 2.0}
+    >>> loop = {"bands": [band], "one_foim_serves": True, "records": 12, "noise_percent": 1.0}
+    >>> serves_text({**loop, "one_foim": fit, "one_foim_baseline": fit})[:31]
+    'One FOIM serves the whole range'
+    """
+    bands = loop["bands"]
+    structures = ", then ".join(str(band["structure"]) for band in bands)
+    verdict = "serves" if loop["one_foim_serves"] else "does not serve"
+    best = loop["one_foim"]
+    return (
+        f"One FOIM {verdict} the whole range on the virtual rig: discovery finds "
+        f"{counted(len(bands), 'band')} ({structures}). The best single FOIM, of order "
+        f"{significant(best['order'], 3)}, misses {percent(best['error_percent'])} of the peak "
+        f"over {counted(loop['records'], 'record')} (the baseline's: "
+        f"{percent(loop['one_foim_baseline']['error_percent'])}); noise is "
+        f"{percent(loop['noise_percent'])}."
+    )

@@ -1,0 +1,84 @@
+"""Check a campaign: its records one by one, the sense of its force, and what its plan can tell."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from discover.data_check.result import DataCheck, Inseparable
+from discover.data_check.separation import inseparable_pairs
+from discover.record_checks import RecordCheck, check_records
+from discover.records import Campaign, Finding
+from discover.study.options import StudyOptions
+from discover.study.preparation import prepare
+
+_SAME = 0.05  # relative difference below which two amplitudes are one
+
+
+def check_campaign(campaign: Campaign, options: StudyOptions | None = None) -> DataCheck:
+    """Judge a campaign's data before anything is concluded from it.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As `discover.readers.read_campaign` returns it.
+    options : StudyOptions, optional
+        Only its seed and number of processes count.
+
+    Returns
+    -------
+    DataCheck
+
+    Raises
+    ------
+    InputError
+        Where a record can't be used.
+    """
+    chosen = options or StudyOptions()
+    judged = check_records(campaign)
+    inseparable: tuple[Inseparable, ...] = ()
+    if campaign.fitted:
+        prepared = prepare(campaign, chosen)
+        inseparable = inseparable_pairs(prepared.fitted, prepared.dictionary)
+    return DataCheck(
+        title=campaign.title,
+        content_hash=campaign.content_hash,
+        seed=chosen.seed,
+        records=judged.records,
+        findings=(*judged.findings, *_plan_findings(judged.records)),
+        inseparable=inseparable,
+    )
+
+
+def _plan_findings(records: Sequence[RecordCheck]) -> list[Finding]:
+    fitted = [r for r in records if not r.held_out]
+    amplitudes = _distinct([r.amplitude_m for r in fitted if r.amplitude_m])
+    frequencies = _distinct([r.frequency_hz for r in fitted if r.frequency_hz])
+    if not fitted or any(r.amplitude_m is None or r.frequency_hz is None for r in fitted):
+        return []  # a sweep or a trajectory has more than one of each
+    found = []
+    if len(frequencies) == 1:
+        found.append(
+            Finding(
+                "warning",
+                f"all tests run at {frequencies[0]:.3g} Hz: neither an order nor a boundary can be"
+                " found.",
+            )
+        )
+    elif len(amplitudes) == 1:
+        found.append(
+            Finding(
+                "warning",
+                f"all tests run at {1e3 * amplitudes[0]:.3g} mm: a boundary that follows the Dean"
+                " number can't be told from one that is fixed in frequency.",
+            )
+        )
+    return found
+
+
+def _distinct(values: Sequence[float]) -> list[float]:
+    """Return values that differ by more than a few percent, rising."""
+    kept: list[float] = []
+    for value in sorted(values):
+        if not kept or value > (1.0 + _SAME) * kept[-1]:
+            kept.append(value)
+    return kept

@@ -1,0 +1,105 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from discover.data_check import check_campaign
+from discover.data_check.separation import TELLING, expected_gap, inseparable_pairs
+from discover.records import Campaign, Record
+from discover.study.options import StudyOptions
+from discover.study.preparation import prepare
+
+PLAN = ((0.5, 0.01), (1.0, 0.01), (2.0, 0.01), (2.0, 0.005), (6.0, 0.005), (12.0, 0.005))
+
+
+def record(frequency, amplitude, *, noise=0.02, seed=0, **options):
+    """A mass with a damper on a sine test, eight cycles at a hundred samples each."""
+    generator = np.random.default_rng([seed, round(100 * frequency), round(1e4 * amplitude)])
+    time = np.arange(800) / (100.0 * frequency)
+    omega = 2.0 * np.pi * frequency
+    x = amplitude * np.sin(omega * time)
+    force = -370.0 * omega**2 * x + 4000.0 * amplitude * omega * np.cos(omega * time)
+    force += noise * np.std(force) * generator.standard_normal(time.size)
+    name = f"{frequency:g}-{1e3 * amplitude:g}.csv"
+    return Record(name, time, force, displacement=x, **options)
+
+
+def campaign(plan, **options):
+    return Campaign("plan", tuple(record(f, a, **options) for f, a in plan))
+
+
+@pytest.fixture(scope="module")
+def wide():
+    return prepare(campaign(PLAN), StudyOptions())
+
+
+@pytest.fixture(scope="module")
+def single():
+    plan = ((2.0, 0.005), (2.0, 0.01), (2.0, 0.02))
+    return prepare(campaign(plan), StudyOptions())
+
+
+def test_at_one_frequency_a_fractional_order_is_mass_and_damper(single):
+    assert expected_gap("FOIM", "IOIM-linear", single.fitted, single.dictionary) < 1e-6
+    pairs = {p.structures: p for p in inseparable_pairs(single.fitted, single.dictionary)}
+    assert "single frequency (2 Hz)" in pairs["FOIM", "IOIM-linear"].why
+    assert pairs["FOIM", "IOIM-linear"].gap < 1e-6
+
+
+def test_over_a_wide_plan_the_structures_are_apart(wide):
+    assert inseparable_pairs(wide.fitted, wide.dictionary) == ()
+    assert expected_gap("FOIM", "IOIM-linear", wide.fitted, wide.dictionary) > 100.0
+
+
+def test_a_larger_model_always_reproduces_a_smaller_one(wide):
+    assert expected_gap("IOIM-linear", "IOIM-laminar", wide.fitted, wide.dictionary) < 1e-9
+    assert expected_gap("IOIM-laminar", "IOIM-linear", wide.fitted, wide.dictionary) > TELLING
+
+
+@pytest.mark.parametrize("truth", ["FOIM", "IOIM-turbulent"])
+def test_the_gap_falls_with_the_square_of_the_noise(wide, truth):
+    model = "IOIM-laminar"
+    louder = [replace(w, variance=9.0 * w.variance) for w in wide.fitted]
+    quiet = expected_gap(truth, model, wide.fitted, wide.dictionary)
+    assert expected_gap(truth, model, louder, wide.dictionary) == pytest.approx(
+        quiet / 9.0, rel=1e-6
+    )
+
+
+def test_the_gap_equals_least_squares_on_the_samples_themselves(wide):
+    """The same question asked in the time domain: exact columns, the records' white noise."""
+    columns, truth, measured = [], [], []
+    for (frequency, amplitude), window in zip(PLAN, wide.fitted, strict=True):
+        omega = 2.0 * np.pi * frequency
+        phase = omega * np.arange(800) / (100.0 * frequency)
+        test = record(frequency, amplitude, noise=0.0)
+        sigma = np.sqrt(window.noise_power)
+        velocity = amplitude * omega * np.cos(phase)
+        acceleration = -amplitude * omega**2 * np.sin(phase)
+        columns.append(np.stack([acceleration, velocity, np.sign(velocity)]) / sigma)
+        truth.append(amplitude * omega**1.5 * np.sin(phase + 0.75 * np.pi) / sigma)
+        measured.append(test.force / sigma)
+    design, force = np.concatenate(columns, axis=1).T, np.concatenate(truth)
+    force *= np.linalg.norm(np.concatenate(measured)) / np.linalg.norm(force)
+    scale = np.linalg.norm(design, axis=0)
+    misfit = force - design / scale @ np.linalg.lstsq(design / scale, force, rcond=None)[0]
+    gap = expected_gap("FOIM", "IOIM-linear", wide.fitted, wide.dictionary)
+    assert gap == pytest.approx(0.5 * misfit @ misfit, rel=0.15)
+
+
+def test_much_noise_leaves_turbulent_and_laminar_friction_open():
+    prepared = prepare(campaign(PLAN[1:3], noise=0.3), StudyOptions())
+    pairs = {p.structures: p for p in inseparable_pairs(prepared.fitted, prepared.dictionary)}
+    assert "speak with only" in pairs["IOIM-laminar", "IOIM-turbulent"].why
+
+
+def test_a_plan_of_one_amplitude_can_not_decide_the_dean_check():
+    checked = check_campaign(campaign(((0.5, 0.01), (1.0, 0.01), (2.0, 0.01))))
+    assert any("all tests run at 10 mm" in f.text for f in checked.findings)
+    assert checked.passed
+    assert not any("all tests run" in f.text for f in check_campaign(campaign(PLAN)).findings)
+
+
+def test_a_plan_of_one_frequency_can_not_give_an_order():
+    checked = check_campaign(campaign(((2.0, 0.005), (2.0, 0.02))))
+    assert any("all tests run at 2 Hz" in f.text for f in checked.findings)
