@@ -1,4 +1,4 @@
-"""The Dean-number criterion, checked: does the boundary lie where, and move as, it says?
+"""The Dean-number criterion, checked: the boundary lies where, and moves as, it says, or not.
 
 Under the criterion De = 100 the boundary's frequency falls as the inverse of the amplitude,
 f_low ~ A^k with k = -1; a boundary fixed in frequency has k = 0. With the bands' models held, a

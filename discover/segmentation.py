@@ -19,7 +19,7 @@ from discover.library.dictionary import Dictionary
 from discover.regression.support import ProfiledFit, Support
 from discover.selection.evidence import Scored, score
 from discover.triangle import Triangle, WindowRows, merge, triangle_of
-from models.checks import Array
+from models.checks import Array, Indices
 
 MIN_WINDOWS = 3
 MAX_BANDS = 5
@@ -37,7 +37,7 @@ class Boundary:
     """Of 95 % posterior probability; never tighter than the bracket."""
     value: float
     """Geometric middle of the bracket."""
-    positions: Array
+    positions: Indices
     """(P,) positions of the posterior."""
     probabilities: Array
     """(P,) their posterior, the other boundaries held."""
@@ -47,8 +47,8 @@ class Boundary:
 class Segmentation:
     """The best division into bands."""
 
-    order: Array
-    """(W,) int: windows in rising coordinate."""
+    order: Indices
+    """(W,) windows in rising coordinate."""
     coordinate: Array
     """(W,) sorted values."""
     starts: tuple[int, ...]
@@ -65,7 +65,7 @@ class Segmentation:
         """Number of bands."""
         return len(self.starts)
 
-    def members(self, band: int) -> Array:
+    def members(self, band: int) -> Indices:
         """Return the indices of the windows in a band."""
         ends = (*self.starts[1:], self.order.size)
         return self.order[self.starts[band] : ends[band]]
@@ -98,8 +98,7 @@ def _divide(
     runs: dict[tuple[int, int], Scored], size: int, bands: int, cost: float
 ) -> tuple[float, tuple[int, ...]]:
     """Return the best total and starts of a division into exactly `bands` bands."""
-    total = {0: (0.0, ())}
-    table: list[dict[int, tuple[float, tuple[int, ...]]]] = [total]
+    table: list[dict[int, tuple[float, tuple[int, ...]]]] = [{0: (0.0, ())}]
     for _ in range(bands):
         new: dict[int, tuple[float, tuple[int, ...]]] = {}
         for (start, stop), run in runs.items():
@@ -114,7 +113,7 @@ def _divide(
 
 
 def _interval(
-    coordinate: Array, positions: Array, probabilities: Array
+    coordinate: Array, positions: Indices, probabilities: Array
 ) -> tuple[float, float]:
     """Return the highest-probability brackets that hold 95 %, as one interval."""
     order = np.argsort(-probabilities)
@@ -153,7 +152,6 @@ def segment(
     *,
     bands: int | None = None,
     shortest: int = MIN_WINDOWS,
-    relative_error: float = 1.0,
 ) -> Segmentation:
     """Return the best division of windows into bands.
 
@@ -171,8 +169,6 @@ def segment(
         Fixes the number; otherwise the evidence does, up to five.
     shortest : int
         Fewest windows in a band.
-    relative_error : float
-        Scale of the model error in the weights.
 
     Returns
     -------
@@ -180,7 +176,7 @@ def segment(
     """
     order = np.argsort(coordinate, kind="stable")
     sorted_coordinate = coordinate[order]
-    triangles = [triangle_of([windows[i]], relative_error) for i in order]
+    triangles = [triangle_of([windows[i]]) for i in order]
     rows = sum(t.rows for t in triangles)
     runs = _run_scores(triangles, dictionary, supports, shortest, rows)
     size = order.size

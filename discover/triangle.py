@@ -14,7 +14,7 @@ import numpy as np
 
 from discover.library.dictionary import Dictionary
 from discover.motion_fit.observation import Observation, Window, real_rows
-from models.checks import Array
+from models.checks import Array, Indices
 
 _SUB_BANDS = 6
 _REDUCE_ABOVE = 1.5  # rows per column from which a block is worth reducing
@@ -26,14 +26,14 @@ class WindowRows:
 
     matrix: Array
     """(R, K + 1) columns and, last, the force, N."""
-    block: Array
-    """(R,) int: the block of each row."""
+    block: Indices
+    """(R,) the block of each row."""
     count: Array
     """(B,) number of rows that each block had before it was reduced."""
     variance: Array
     """(B,) noise variance of a block's rows, N^2."""
     discrepancy: Array
-    """(B,) variance of a model error of relative size one, N^2: where errors of models show."""
+    """(B,) variance of the model's error in a block's rows, N^2; none until it is found."""
     record: int
     """Index of the record among the observations."""
     frequency: float
@@ -51,16 +51,20 @@ class WindowRows:
     share: float
     """Part of the record's duration."""
 
-    def whitened(self, relative_error: float) -> Array:
-        """Return the rows over their standard deviation, with model error added to the noise."""
-        total = self.variance + relative_error**2 * self.discrepancy
-        result: Array = self.matrix / np.sqrt(total)[self.block][:, None]
-        return result
+    @property
+    def total_variance(self) -> Array:
+        """(B,) noise and model error, N^2."""
+        return self.variance + self.discrepancy
 
-    def log_determinant(self, relative_error: float) -> float:
-        """Return the sum of log variances over all rows, reduced ones included."""
-        total = self.variance + relative_error**2 * self.discrepancy
-        return float(self.count @ np.log(total))
+    @property
+    def whitened(self) -> Array:
+        """(R, K + 1) rows over their standard deviation."""
+        return self.matrix / np.sqrt(self.total_variance)[self.block][:, None]
+
+    @property
+    def log_determinant(self) -> float:
+        """Sum of log variances over all rows, reduced ones included."""
+        return float(self.count @ np.log(self.total_variance))
 
 
 @dataclass(frozen=True)
@@ -102,25 +106,22 @@ def merge(triangles: Iterable[Triangle]) -> Triangle:
     )
 
 
-def triangle_of(windows: Sequence[WindowRows], relative_error: float) -> Triangle:
-    """Return the triangle of `windows`, whitened by noise and a model error of that size."""
+def triangle_of(windows: Sequence[WindowRows]) -> Triangle:
+    """Return the triangle of `windows`, whitened by noise and model error."""
     return Triangle(
-        reduce_rows(np.concatenate([w.whitened(relative_error) for w in windows])),
+        reduce_rows(np.concatenate([w.whitened for w in windows])),
         int(sum(w.count.sum() for w in windows)),
-        float(sum(w.log_determinant(relative_error) for w in windows)),
+        float(sum(w.log_determinant for w in windows)),
     )
 
 
-def _blocks(window: Window, sine: bool) -> tuple[Array, Array]:
-    """Return the block of each line and the share of model error in each line (sums to one)."""
+def _blocks(window: Window, *, sine: bool) -> Indices:
+    """Return the block of each line: its harmonic, or a part of the band."""
     size = window.omega.size
     if sine:
-        harmonic = np.arange(size)
-        profile = 1.0 / np.maximum(harmonic, 1.0) ** 2
-        profile[harmonic % 2 == 0] *= 0.25
-        return harmonic, profile / profile.sum()
-    edges = np.unique(np.geomspace(2, size, _SUB_BANDS + 1).astype(int))
-    return np.searchsorted(edges[:-1], np.arange(size), side="right"), np.full(size, 1.0 / size)
+        return np.arange(size)
+    edges = np.unique(np.geomspace(2, size, _SUB_BANDS + 1).astype(np.int_))
+    return np.asarray(np.searchsorted(edges[:-1], np.arange(size), side="right"))
 
 
 def window_rows(
@@ -133,7 +134,7 @@ def window_rows(
         stacked.append((-1j * window.omega * window.force)[None])
     stacked.append(window.force[None])
     rows = real_rows(np.concatenate(stacked)).T
-    block, profile = _blocks(window, sine)
+    block = _blocks(window, sine=sine)
     of_row = np.concatenate((block, block))
     present = np.unique(block)
     reduced, kept_block = [], []
@@ -145,18 +146,17 @@ def window_rows(
     count = np.array([np.sum(of_row == b) for b in present], dtype=np.float64)
     if sine:
         count[0] = 1.0  # the mean has no imaginary part
-    power = window.power
     return WindowRows(
         matrix=np.concatenate(reduced),
         block=np.concatenate(kept_block),
         count=count,
         variance=np.array([window.variance[block == b].mean() for b in present]),
-        discrepancy=np.array([0.5 * power * profile[block == b].mean() for b in present]),
+        discrepancy=np.zeros(present.size),
         record=record,
         frequency=window.frequency,
         amplitude=window.amplitude,
         speed=window.speed,
-        power=power,
+        power=window.power,
         rest=window.rest,
         noise_power=window.noise_power,
         share=window.share,

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int_]
 
 
 class InputError(ValueError):
@@ -102,7 +103,8 @@ def finite_array(
     try:
         result = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise InputError(name, expected="numeric", found=type(value).__name__, where=where) from None
+        found = type(value).__name__
+        raise InputError(name, expected="numeric", found=found, where=where) from None
     if ndim is not None and result.ndim != ndim:
         raise InputError(
             name, expected=f"{ndim}-dimensional", found=f"shape {result.shape}", where=where

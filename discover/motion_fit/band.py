@@ -14,7 +14,7 @@ from models.checks import Array, InputError
 from models.fractional import band_limited_derivative, low_pass, spectral_derivative
 from models.motion import Motion
 
-_SIGNAL_TO_NOISE = 1000.0  # power of the displacement over its floor at the edge of the excited band
+_SIGNAL_TO_NOISE = 1000.0  # of the displacement's power, at the edge of the excited band
 _GUARD = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
 _NYQUIST_SHARE = 0.9
 _RELATIVE_FLOOR = 1e-6
@@ -60,7 +60,8 @@ def choose_cutoff(displacement: Array, step: float, *, where: str = "") -> float
             found="noise at all frequencies",
             where=where,
         )
-    return float(min(max(_GUARD * frequencies[clear[-1]], 8.0 * frequencies[1]), _NYQUIST_SHARE * nyquist))
+    end = max(_GUARD * frequencies[clear[-1]], 8.0 * frequencies[1])
+    return float(min(end, _NYQUIST_SHARE * nyquist))
 
 
 def _measured(record: Record, usable: slice, motion: Motion, cutoff: float) -> Motion:
@@ -184,7 +185,7 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         inside = slice(start, start + size)
         count = int(np.floor(cutoff * size * step)) + 1
         project = _projection(inside, taper, count)
-        frequencies = np.arange(count) / (size * step)
+        frequencies = np.arange(count, dtype=np.float64) / (size * step)
         density, *levels = _line_variance(x, force, step, cutoff, frequencies)
         noise = (levels[0], levels[1])
         variance = np.maximum(density / (2.0 * size * step), _RELATIVE_FLOOR**2 * mean_power)
@@ -264,7 +265,7 @@ def observe_periodic(record: Record, usable: slice, period: int) -> Observation:
     noise_f = float(np.sqrt(np.sum((each_f - force) ** 2) / (freedom * period)))
     noise_x = float(np.sqrt(np.sum((each_x - x) ** 2) / (freedom * period)))
     window = Window(
-        omega=2.0 * np.pi * np.arange(count) / (period * step),
+        omega=2.0 * np.pi * np.arange(count, dtype=np.float64) / (period * step),
         force=lines,
         variance=variance,
         project=project,

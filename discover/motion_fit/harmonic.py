@@ -109,10 +109,11 @@ def observe_sine(
         found = _lines(cho_solve(factor, design.T @ flat.T), count).T
         return found.reshape((*columns.shape[:-1], count + 1))
 
-    multiples = frequency * np.arange(count + 1)
+    multiples: Array = frequency * np.arange(count + 1, dtype=np.float64)
     if record.uniform:
         density = density_between_lines(residual, record.step, frequency, multiples)
-        every = frequency * np.arange(1, int(0.5 / record.step / frequency) + 1)
+        last = int(0.5 / record.step / frequency)
+        every: Array = frequency * np.arange(1.0, last + 1.0)
         spread = every[:: max(every.size // 64, 1)]
         level = density_between_lines(residual, record.step, frequency, spread)
         noise = float(np.sqrt(np.mean(level) * 0.5 / record.step))

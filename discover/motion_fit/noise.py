@@ -26,7 +26,8 @@ def power_density(residual: Array, step: float) -> tuple[Array, Array]:
     """
     taper = np.hanning(residual.size + 2)[1:-1]
     spectrum = np.abs(np.fft.rfft(residual * taper)) ** 2
-    return np.fft.rfftfreq(residual.size, step), 2.0 * step * spectrum / np.sum(taper**2)
+    frequencies = np.asarray(np.fft.rfftfreq(residual.size, step), dtype=np.float64)
+    return frequencies, 2.0 * step * spectrum / np.sum(taper**2)
 
 
 def density_between_lines(

@@ -134,7 +134,7 @@ def _to_si(fit: SupportFit, dictionary: Dictionary) -> Array:
 def _profile_interval(
     fits: ProfiledFit, fit: SupportFit, position: int, rise: float
 ) -> tuple[float, float]:
-    """Return where the misfit, all else refitted, has risen by `rise`; bounds where it never does."""
+    """Return where the misfit, all else refitted, has risen by `rise`; else the bounds."""
     family, _ = _family(fit.support.free[position], fits.dictionary)
     best = fit.shapes[position]
 

@@ -60,6 +60,11 @@ class BestSubset(BaseOptimizer):  # type: ignore[misc]
     history_ : list of ndarray, shape (n_targets, n_features)
         Coefficients with no term, one, two, ...
 
+    Notes
+    -----
+    `forced`, `nonnegative` and `exclusive` are positions. ``EnsembleOptimizer`` with
+    ``library_ensemble=True`` drops columns, which moves the others: leave them out there.
+
     Examples
     --------
     >>> rng = np.random.default_rng(1)

@@ -150,7 +150,7 @@ class ProfiledFit:
             norms = np.linalg.norm(base, axis=0)
             q, _ = np.linalg.qr(base / np.where(norms > 0.0, norms, 1.0))
             both = both - q @ (q.T @ both)
-        reduced = np.linalg.qr(both, mode="r")
+        reduced = np.asarray(np.linalg.qr(both, mode="r"))
         count = both.shape[1] - 1
         return reduced[:count, :count], reduced[:count, count], reduced[count:, count]
 
@@ -189,7 +189,7 @@ class ProfiledFit:
         weights = np.column_stack([*shaped, stacked]) if shaped else stacked
         if weights.shape[1] == 0:
             empty = np.empty(0)
-            return SupportFit(support, (), empty, self.energy, True, weights, empty)
+            return SupportFit(support, (), empty, self.energy, valid=True, weights=weights, shares=empty)
         columns = self.triangle.columns @ weights
         coefficients, chi2 = solve(columns, self.triangle.target)
         shares = np.linalg.norm(columns, axis=0) * np.abs(coefficients)

@@ -1,0 +1,1 @@
+"""Which structure: evidence, prediction of left-out records, and what matters."""

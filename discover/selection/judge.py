@@ -65,7 +65,7 @@ def score_meat(windows: Sequence[WindowRows], fit: SupportFit) -> Array:
     meat = np.zeros((size, size))
     combined = fit.combined
     for window in windows:
-        rows = window.whitened(1.0)
+        rows = window.whitened
         gradient = rows[:, :-1].T @ (rows[:, -1] - rows[:, :-1] @ combined)
         meat += np.outer(gradient, gradient)
     count = len(windows)
@@ -105,7 +105,7 @@ def judge(
     """
     start = list(supports) if keep_all else named_supports(dictionary, ())
     weighed = with_discrepancy(windows, dictionary, coordinate, start)
-    result = contest(triangle_of(weighed, 1.0), dictionary, supports)
+    result = contest(triangle_of(weighed), dictionary, supports)
     if not keep_all:
         candidates = [s.fit.support for s in result.scored if np.isfinite(s.log_evidence)]
         if len({w.record for w in windows}) < _CROSS_CHECKED:
@@ -114,7 +114,7 @@ def judge(
         for _ in range(_ROUNDS):
             leading = candidates[0]
             weighed = with_discrepancy(windows, dictionary, coordinate, [leading])
-            result = contest(triangle_of(weighed, 1.0), dictionary, candidates)
+            result = contest(triangle_of(weighed), dictionary, candidates)
             candidates = [s.fit.support for s in result.scored]
             if candidates[0] == leading:
                 break
@@ -124,7 +124,7 @@ def judge(
     if several and not keep_all:
         best, probabilities, by_noise = _predictive(windows, dictionary, result, seed)
     final = list(weighed) if by_noise else _alike(weighed)
-    engine = ProfiledFit(triangle_of(final, 1.0), dictionary)
+    engine = ProfiledFit(triangle_of(final), dictionary)
     fit = engine.fit(best)
     freedom = max(_clusters(final) - best.parameters, 1)
     spread = uncertainty(

@@ -77,7 +77,7 @@ def _extras(prepared: Prepared, coordinate: Array) -> tuple[str, ...]:
 
 def _log_likelihood(windows: Sequence[WindowRows], fit: SupportFit) -> Array:
     combined = np.append(-fit.combined, 1.0)
-    return np.array([-0.5 * np.sum((w.whitened(1.0) @ combined) ** 2) for w in windows])
+    return np.array([-0.5 * np.sum((w.whitened @ combined) ** 2) for w in windows])
 
 
 def find_bands(prepared: Prepared, device: Device | None, options: StudyOptions) -> Bands:

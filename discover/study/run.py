@@ -9,7 +9,7 @@ import numpy as np
 from discover.dean import DeanCheck, check_dean
 from discover.figure_data import StructureProbability, StudyFigureData
 from discover.library.dictionary import DELAY, Dictionary
-from discover.records import Campaign, Finding
+from discover.records import Campaign
 from discover.regression.baselines import baseline_answers
 from discover.regression.support import fitted_terms
 from discover.segmentation import Boundary
