@@ -163,6 +163,19 @@ def test_sindy_finds_integer_terms_of_a_multisine_exactly():
     np.testing.assert_allclose(model.coefficients()[0, kept], [100.0, 40.0, 900.0], rtol=1e-8)
 
 
+def test_sindy_uses_measured_velocity_and_acceleration(capsys):
+    v = 0.01 * OMEGA * np.cos(OMEGA * TIME)
+    a = -0.01 * OMEGA**2 * np.sin(OMEGA * TIME) + 0.2 * np.cos(9.0 * OMEGA * TIME)
+    measured = np.column_stack([sine(), v, a])  # an acceleration that the displacement lacks
+    features = library(terms=("inertia", "viscous-damping", "stiffness"))
+    model = ps.SINDy(feature_library=features, optimizer=BestSubset(2))
+    force = 3.0 * a + 2.0 * v
+    model.fit(measured, t=DT, x_dot=force[:, None], feature_names=["x", "v", "a"])
+    np.testing.assert_allclose(model.coefficients(), [[3.0, 2.0, 0.0]], rtol=1e-9, atol=1e-12)
+    model.print(lhs=["F"])
+    assert capsys.readouterr().out == "F =  3.000 a +  2.000 v\n"
+
+
 def test_trajectories_may_be_sampled_differently():
     coarse, fine = sine()[::2], sine()
     features = library(terms=("inertia",), dt=(2 * DT, DT)).fit([coarse, fine])
