@@ -1,0 +1,408 @@
+"""Motion in time against Mittag-Leffler functions, scipy's solvers, and exact friction."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from pymittagleffler import mittag_leffler
+from scipy.integrate import solve_ivp
+
+from models.checks import InputError
+from models.constitutive import Band, FittedTerm, ForceModel, SegmentedModel, ioim_turbulent
+from models.device import Device
+from models.simulation import (
+    PeriodicPast,
+    no_load,
+    sampled_load,
+    simulate,
+    sine_load,
+    sweep_load,
+)
+from models.structure import Mount, Structure, chain, oscillator
+
+CYCLE = 2.0 * np.pi
+
+
+def fractional(coefficient: float, order: float) -> ForceModel:
+    return ForceModel((FittedTerm("fractional-derivative", coefficient, {"order": order}),))
+
+
+def mittag_leffler_oscillator(
+    c: float, p: int, q: int, x0: float, v0: float, t: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """x'' + c D^(p/q) x + x = 0 (Caputo) by partial fractions in s^(1/q), t > 0."""
+    polynomial = np.zeros(2 * q + 1)
+    polynomial[0] = 1.0
+    polynomial[2 * q - p] += c
+    polynomial[-1] += 1.0
+    roots = np.roots(polynomial)
+    residues = 1.0 / np.polyval(np.polyder(polynomial), roots)
+
+    def inverse(power: float) -> NDArray[np.float64]:
+        second = 1.0 / q - power
+        total = sum(
+            r * mittag_leffler(w * t ** (1.0 / q), 1.0 / q, second)
+            for w, r in zip(roots, residues, strict=True)
+        )
+        return np.real(t ** (second - 1.0) * total)
+
+    moved = x0 * (1.0 - inverse(-1.0)) + v0 * (t - inverse(-2.0))
+    return moved if p > q else moved - v0 * c * inverse(p / q - 2.0)
+
+
+ORDERS = [(1, 4), (1, 2), (7, 5), (3, 2), (19, 10)]
+
+
+@pytest.mark.parametrize(("p", "q"), ORDERS)
+@pytest.mark.parametrize("c", [0.25, 1.0])
+def test_two_cycles_at_ten_thousand_steps(p: int, q: int, c: float) -> None:
+    response = simulate(
+        oscillator(1.0, 1.0, fractional(c, p / q)),
+        step=2 * CYCLE / 10_000, duration=2 * CYCLE, displacement=1.0, velocity=0.5,
+        estimate_error=False,
+    )  # fmt: skip
+    at = np.arange(50, 10_001, 50)
+    exact = mittag_leffler_oscillator(c, p, q, 1.0, 0.5, response.time[at])
+    assert np.abs(response.displacement[at, 0] - exact).max() <= 1e-6 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize(("p", "q"), ORDERS)
+@pytest.mark.parametrize("c", [0.05, 0.5])
+def test_twenty_cycles_after_extrapolation(p: int, q: int, c: float) -> None:
+    response = simulate(
+        oscillator(1.0, 1.0, fractional(c, p / q)),
+        step=20 * CYCLE / 10_000, duration=20 * CYCLE, displacement=1.0, velocity=0.5,
+        richardson=True,
+    )  # fmt: skip
+    at = np.arange(50, 10_001, 50)
+    exact = mittag_leffler_oscillator(c, p, q, 1.0, 0.5, response.time[at])
+    error = np.abs(response.displacement[at, 0] - exact).max()
+    assert error <= 1e-6 * np.abs(exact).max()
+    assert response.extrapolated
+    assert response.error is not None
+    assert error <= response.error.displacement[0]
+
+
+@pytest.mark.parametrize(("p", "q"), ORDERS)
+def test_second_order_from_the_first_step_on(p: int, q: int) -> None:
+    steps = np.array([250, 500, 1000, 2000])
+    errors = []
+    for n in steps:
+        response = simulate(
+            oscillator(1.0, 1.0, fractional(0.4, p / q)),
+            step=2 * CYCLE / n, duration=2 * CYCLE, displacement=1.0, velocity=-1.0,
+        )  # fmt: skip
+        exact = mittag_leffler_oscillator(0.4, p, q, 1.0, -1.0, response.time[1:])
+        errors.append(np.abs(response.displacement[1:, 0] - exact).max())
+        assert response.error is not None
+        assert 0.8 < response.error.displacement[0] / errors[-1] < 1.25
+    order = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert order >= 1.9
+
+
+@pytest.mark.parametrize("order", [1.8, 1.95])
+def test_fractional_oscillator_without_mass(order: float) -> None:
+    # D^a x + x = 0: the device alone carries the spring; x = E_a(-t^a) + v0 t E_(a,2)(-t^a).
+    structure = Structure([[0.0]], [[0.0]], [[1.0]], (Mount(fractional(1.0, order)),))
+    response = simulate(
+        structure, step=2 * CYCLE / 10_000, duration=2 * CYCLE, displacement=1.0, velocity=0.5,
+        estimate_error=False,
+    )  # fmt: skip
+    t = response.time[1:]
+    z = -(t**order)
+    exact = np.real(mittag_leffler(z, order, 1.0) + 0.5 * t * mittag_leffler(z, order, 2.0))
+    assert np.abs(response.displacement[1:, 0] - exact).max() <= 1e-6
+
+
+def test_whole_orders_equal_spring_damper_and_inerter() -> None:
+    terms = [("stiffness", 0.0), ("viscous-damping", 1.0), ("inertia", 2.0)]
+    for name, order in terms:
+        plain = oscillator(1.0, 2.0, ForceModel((FittedTerm(name, 0.7),)))
+        same = oscillator(1.0, 2.0, fractional(0.7, order))
+        a, b = (
+            simulate(s, sine_load(1.0, 0.3), step=0.01, duration=5.0, estimate_error=False)
+            for s in (plain, same)
+        )
+        np.testing.assert_array_equal(a.displacement, b.displacement)
+
+
+@pytest.mark.parametrize(
+    ("whole", "near", "start", "speed"),
+    [(0.0, 1e-7, 0.0, 0.3), (1.0, 1.0 - 1e-7, 1.0, 0.3), (1.0, 1.0 + 1e-7, 1.0, 0.0),
+     (2.0, 2.0 - 1e-7, 1.0, 0.3)],
+)  # fmt: skip
+def test_orders_tend_to_the_whole_ones(
+    whole: float, near: float, start: float, speed: float
+) -> None:
+    # Caputo's derivative of order 0+ and 1+ is that of x - x(0) and v - v(0).
+    a, b = (
+        simulate(
+            oscillator(1.0, 2.0, fractional(0.7, order)),
+            step=0.002, duration=10.0, displacement=start, velocity=speed, estimate_error=False,
+        )
+        for order in (whole, near)
+    )  # fmt: skip
+    np.testing.assert_allclose(a.displacement, b.displacement, rtol=0.0, atol=1e-6)
+
+
+def test_whole_orders_against_scipy() -> None:
+    device = Device.preset("device-10")
+    law = ForceModel(
+        (
+            FittedTerm("inertia", 73.82),
+            FittedTerm("quadratic-damping", 3000.0),
+            FittedTerm("viscous-damping", 150.0),
+            FittedTerm("cubic-stiffness", 4e6),
+        )
+    )
+    structure = chain([200.0, 50.0], [2e5, 8e4], [100.0, 50.0], [Mount(law, 1, 0)])
+    assert device.inertance > 0.0
+    shake = sine_load(3.0, 2.0, acts="base", phase=0.4)
+    mass = structure.mass + 73.82 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+
+    def rate(t: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
+        x, v = y[:2], y[2:]
+        s, u = x[1] - x[0], v[1] - v[0]
+        force = 3000.0 * u * abs(u) + 150.0 * u + 4e6 * s**3
+        base = float(shake.history(np.array([t]))[0])
+        total = -structure.mass.sum(axis=1) * base - structure.damping @ v
+        total -= structure.stiffness @ x + np.array([-force, force])
+        return np.concatenate([v, np.linalg.solve(mass, total)])
+
+    exact = solve_ivp(
+        rate, (0.0, 1.0), np.zeros(4), method="DOP853", rtol=1e-13, atol=1e-16,
+        t_eval=np.linspace(0.0, 1.0, 11),
+    )  # fmt: skip
+    response = simulate(structure, shake, step=2e-5, duration=1.0, richardson=True, keep_every=5000)
+    error = np.abs(response.displacement.T - exact.y[:2]).max()
+    assert error <= 1e-8 * np.abs(exact.y[:2]).max()
+
+
+FRICTION = 0.2
+
+
+def rubbing(*others: FittedTerm, friction: float = FRICTION) -> ForceModel:
+    return ForceModel((FittedTerm("coulomb-friction", friction), *others))
+
+
+@pytest.mark.parametrize("order", [0.5, 1.5])
+def test_below_the_limit_nothing_moves_to_the_last_bit(order: float) -> None:
+    law = rubbing(FittedTerm("fractional-derivative", 0.3, {"order": order}))
+    response = simulate(
+        oscillator(1.0, 1.0, law), sine_load(0.999 * FRICTION, 0.11), step=0.01, duration=200.0
+    )
+    assert not response.displacement.any()
+    assert not response.velocity.any()
+    moving = simulate(
+        oscillator(1.0, 1.0, law), sine_load(1.01 * FRICTION, 0.11), step=0.01, duration=200.0
+    )
+    assert moving.displacement.any()
+
+
+def test_stuck_between_two_masses_moves_as_one() -> None:
+    law = rubbing(friction=100.0)
+    structure = chain([1.0, 2.0], [9.0, 0.0], None, [Mount(law, 1, 0)])
+    response = simulate(structure, sine_load(1.0, 0.3), step=0.001, duration=10.0)
+    np.testing.assert_array_equal(response.velocity[:, 0], response.velocity[:, 1])
+    rigid = simulate(oscillator(3.0, 9.0), sine_load(1.0, 0.3), step=0.001, duration=10.0)
+    np.testing.assert_allclose(response.displacement[:, 0], rigid.displacement[:, 0], atol=1e-12)
+
+
+@pytest.mark.parametrize("start", [0.9, 1.33, 2.9, 3.05])
+def test_friction_oscillator_stops_in_the_half_cycle_of_theory(start: float) -> None:
+    # Each half-cycle takes 2 f0/k off the amplitude; it stops where the spring can't overcome f0.
+    half_cycles, rest = 0, start
+    while abs(rest) > FRICTION:
+        rest = -np.sign(rest) * (abs(rest) - 2.0 * FRICTION)
+        half_cycles += 1
+    response = simulate(
+        oscillator(1.0, 1.0, rubbing()), step=1e-3, duration=40.0, displacement=start,
+        estimate_error=False,
+    )  # fmt: skip
+    moving = response.velocity[:, 0] != 0.0
+    last = response.time[np.nonzero(moving)[0][-1]]
+    assert abs(last - half_cycles * np.pi) < 3e-3
+    assert abs(response.displacement[-1, 0] - rest) < 1e-5
+    stopped = response.displacement[response.time > last + 0.01, 0]
+    assert (stopped == stopped[0]).all()
+
+
+def test_second_order_through_reversals() -> None:
+    # Strong enough to slide on without sticking; each half-cycle is a shifted cosine.
+    def exact(t: NDArray[np.float64]) -> NDArray[np.float64]:
+        half = np.floor(t / np.pi)
+        amplitude = 10.0 - 2.0 * FRICTION * half
+        sign = np.where(half % 2 == 0, 1.0, -1.0)
+        return sign * (FRICTION + (amplitude - FRICTION) * np.cos(t - half * np.pi))
+
+    errors = []
+    for n in (400, 800, 1600, 3200):
+        response = simulate(
+            oscillator(1.0, 1.0, rubbing()), step=10.0 / n, duration=10.0, displacement=10.0,
+            estimate_error=False,
+        )  # fmt: skip
+        errors.append(np.abs(response.displacement[:, 0] - exact(response.time)).max())
+    rates = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert rates.mean() >= 1.9
+
+
+def every_effect() -> ForceModel:
+    return ForceModel(
+        (
+            FittedTerm("inertia", 0.4),
+            FittedTerm("viscous-damping", 0.1),
+            FittedTerm("quadratic-damping", 0.2),
+            FittedTerm("power-law-damping", 0.1, {"exponent": 1.75}),
+            FittedTerm("asymmetric-damping", 0.03),
+            FittedTerm("stiffness", 0.3),
+            FittedTerm("cubic-stiffness", 0.5),
+            FittedTerm("force-offset", 0.05),
+            FittedTerm("coulomb-friction", 0.1),
+            FittedTerm("stribeck-friction", 0.05, {"stribeck_velocity": 0.1}),
+            FittedTerm("coulomb-friction", 0.04, {"transition_speed": 0.05}),
+            FittedTerm("fractional-derivative", 0.2, {"order": 0.6}),
+            FittedTerm("fractional-derivative", 0.3, {"order": 1.7}),
+        )
+    )
+
+
+def test_energy_balance_closes() -> None:
+    structure = chain([1.0, 0.5], [4.0, 2.0], [0.02, 0.01], [Mount(every_effect(), 1, 0)])
+    response = simulate(
+        structure, sweep_load(2.0, 0.05, 2.0, 60.0), step=0.005, duration=60.0, displacement=0.1
+    )
+    assert abs(response.energy.residual) <= 1e-10
+    assert response.energy.input != 0.0
+
+
+def test_works_are_those_of_the_motion() -> None:
+    # Independent of the ledger: quadrature of force times velocity over the samples.
+    law = rubbing(FittedTerm("viscous-damping", 0.3), friction=0.1)
+    drive = sine_load(1.0, 0.2)
+    response = simulate(oscillator(1.0, 1.0, law), drive, step=1e-3, duration=30.0)
+    v = response.velocity[:, 0]
+    push = np.trapezoid(drive.history(response.time) * v, response.time)
+    assert abs(response.energy.input - push) <= 1e-6 * push
+    lost = np.trapezoid(0.3 * v**2, response.time)
+    assert abs(response.energy.viscous - lost) <= 1e-6 * lost
+    rubbed = 0.1 * np.trapezoid(np.abs(v), response.time)
+    assert abs(response.energy.friction - rubbed) <= 1e-5 * rubbed
+
+
+def test_steady_sliding_loses_four_f0_a_per_cycle() -> None:
+    law = rubbing(friction=0.05)
+    response = simulate(oscillator(1.0, 1.0, law), sine_load(1.0, 0.05), step=0.002, duration=400.0)
+    last = simulate(oscillator(1.0, 1.0, law), sine_load(1.0, 0.05), step=0.002, duration=380.0)
+    amplitude = np.ptp(response.displacement[response.time > 380.0]) / 2.0
+    lost = response.energy.friction - last.energy.friction
+    assert lost == pytest.approx(4.0 * 0.05 * amplitude, rel=1e-3)
+
+
+@pytest.mark.parametrize("order", [0.5, 1.5])
+def test_out_of_a_steady_state_the_motion_goes_on_without_transient(order: float) -> None:
+    structure = oscillator(1.0, 1.0, fractional(0.4, order))
+    omega = 0.8
+    compliance = 1.0 / (1.0 - omega**2 + 0.4 * (1j * omega) ** order)
+    past = PeriodicPast(np.array([[0.0], [-1j * compliance]]), omega / CYCLE)
+    response = simulate(
+        structure, sine_load(1.0, omega / CYCLE), step=CYCLE / omega / 1000, past=past,
+        duration=5 * CYCLE / omega, richardson=True,
+    )  # fmt: skip
+    assert response.operator == "weyl"
+    exact = past.displacement(response.time)
+    assert np.abs(response.displacement - exact).max() <= 1e-8 * abs(compliance)
+    force = (0.4 * (1j * omega) ** order * past.coefficients[1, 0]
+             * np.exp(1j * omega * response.time)).real  # fmt: skip
+    inner = slice(5, -5)
+    assert np.abs(response.device_force[inner, 0] - force[inner]).max() <= 1e-6
+
+
+def test_scale_of_the_units_does_not_matter() -> None:
+    law = rubbing(FittedTerm("fractional-derivative", 0.3, {"order": 1.5}))
+    plain = simulate(oscillator(1.0, 1.0, law), sine_load(1.0, 0.2), step=0.01, duration=30.0)
+    heavy = ForceModel(tuple(FittedTerm(t.id, 1e3 * t.coefficient, t.shape) for t in law.terms))
+    scaled = simulate(oscillator(1e3, 1e3, heavy), sine_load(1e3, 0.2), step=0.01, duration=30.0)
+    np.testing.assert_allclose(scaled.displacement, plain.displacement, rtol=0, atol=1e-11)
+
+
+def test_a_load_mirrored_mirrors_the_motion() -> None:
+    law = rubbing(FittedTerm("fractional-derivative", 0.3, {"order": 1.5}))
+    one, other = (
+        simulate(oscillator(1.0, 1.0, law), sine_load(a, 0.2), step=0.01, duration=30.0)
+        for a in (1.0, -1.0)
+    )
+    np.testing.assert_array_equal(one.displacement, -other.displacement)
+
+
+def test_a_sampled_load_equals_its_function() -> None:
+    t = np.linspace(0.0, 10.0, 1001)
+    t.flags.writeable = False
+    structure = oscillator(1.0, 1.0, fractional(0.3, 1.5))
+    drive = sine_load(1.0, 0.2, acts="base")
+    a = simulate(structure, drive, step=0.01, duration=10.0)
+    b = simulate(
+        structure, sampled_load(t, drive.history(t), acts="base"), step=0.01, duration=10.0
+    )
+    np.testing.assert_allclose(a.displacement, b.displacement, atol=1e-13)
+
+
+def test_kept_steps_are_steps_of_the_whole() -> None:
+    structure = oscillator(1.0, 1.0, rubbing(FittedTerm("quadratic-damping", 0.2)))
+    whole = simulate(structure, sine_load(1.0, 0.2), step=0.01, duration=1400.0)
+    part = simulate(structure, sine_load(1.0, 0.2), step=0.01, duration=1400.0, keep_every=7)
+    np.testing.assert_array_equal(whole.displacement[::7], part.displacement)
+    np.testing.assert_allclose(whole.device_force[::7], part.device_force, atol=1e-12)
+
+
+def test_segmented_model_uses_the_band_of_the_speed() -> None:
+    slow, fast = (ForceModel((FittedTerm("viscous-damping", c),)) for c in (0.05, 1.0))
+    law = SegmentedModel((Band(None, 0.5, slow), Band(0.5, None, fast)), "speed")
+    quiet = simulate(oscillator(1.0, 1.0, law), sine_load(0.01, 0.1), step=0.01, duration=50.0)
+    alone = simulate(oscillator(1.0, 1.0, slow), sine_load(0.01, 0.1), step=0.01, duration=50.0)
+    assert quiet.switches == 0
+    np.testing.assert_array_equal(quiet.displacement, alone.displacement)
+    loud = simulate(oscillator(1.0, 1.0, law), sine_load(10.0, 0.16), step=0.01, duration=200.0)
+    damped = simulate(oscillator(1.0, 1.0, fast), sine_load(10.0, 0.16), step=0.01, duration=200.0)
+    assert loud.switches == 1
+    np.testing.assert_allclose(loud.displacement[-2000:], damped.displacement[-2000:], atol=1e-3)
+    assert abs(loud.energy.residual) <= 1e-10
+
+
+def test_segmented_model_by_frequency() -> None:
+    low, high = (ForceModel((FittedTerm("viscous-damping", c),)) for c in (0.1, 2.0))
+    law = SegmentedModel((Band(None, 0.3, low), Band(0.3, None, high)), "frequency")
+    for frequency, band in ((0.1, low), (1.0, high)):
+        drive = sine_load(1.0, frequency)
+        mixed = simulate(oscillator(1.0, 1.0, law), drive, step=0.01, duration=200.0)
+        pure = simulate(oscillator(1.0, 1.0, band), drive, step=0.01, duration=200.0)
+        np.testing.assert_allclose(
+            mixed.displacement[-500:], pure.displacement[-500:], atol=1e-3
+        )
+
+
+def test_turbulent_device_settles() -> None:
+    law = ioim_turbulent(Device.preset("device-10"), friction=550.0)
+    response = simulate(oscillator(250.0, 2e4, law), step=1e-3, duration=20.0, displacement=0.2)
+    assert response.velocity[-1, 0] == 0.0
+    assert abs(response.displacement[-1, 0]) <= 550.0 / 2e4
+    assert response.error is not None
+    assert response.error.relative < 1e-3
+    assert set(response.to_dict()["energy"]) >= {"input", "residual"}
+
+
+def test_errors_say_what_is_wrong() -> None:
+    structure = oscillator(1.0, 1.0)
+    with pytest.raises(InputError, match=r"step must be .* > 0"):
+        simulate(structure, step=0.0, duration=1.0)
+    with pytest.raises(InputError, match="keep_every must be >= 1"):
+        simulate(structure, step=0.1, duration=1.0, keep_every=0)
+    with pytest.raises(InputError, match=r"displacement must be a number or \(1,\)"):
+        simulate(structure, step=0.1, duration=1.0, displacement=[1.0, 2.0])
+    with pytest.raises(InputError, match="degree of freedom of the load"):
+        simulate(structure, sine_load(1.0, 1.0, at=1), step=0.1, duration=1.0)
+    with pytest.raises(InputError, match="upper end of a device"):
+        Structure([[1.0]], [[0.0]], [[1.0]], (Mount(rubbing(), 1),))
+    with pytest.raises(InputError, match="stiffness must be symmetric"):
+        chain([1.0, 1.0], [1.0, 1.0]).__class__(np.eye(2), np.eye(2), [[1.0, 0.5], [0.0, 1.0]])
+    assert simulate(structure, no_load(), step=0.1, duration=1.0).displacement.max() == 0.0
