@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from discover.figure_data import RecordCurves, StudyFigureData
 from discover.plots.style import (
+    INK,
     MUTED,
     house_style,
     new_figure,
@@ -12,46 +15,81 @@ from discover.plots.style import (
     to_svg,
 )
 
+_IN_ONE = 18
+_ROW = 17.0  # CSS pixels
+_LONGEST_NAME = 26
 
-def error_by_record(data: StudyFigureData) -> str | None:
-    """Draw the relative error of every record and its noise floor; None where none has one."""
+
+def error_by_record(data: StudyFigureData) -> list[str]:
+    """Draw the relative error of every record and its noise floor, one row a record.
+
+    Many records are shared out over two pictures with the same axis, to stand side by side; the
+    list is empty where no record has an error.
+    """
     records = [r for r in data.records if r.relative_error_percent is not None]
     if not records:
-        return None
+        return []
+    values = [r.relative_error_percent or 0.0 for r in records]
+    values += [r.noise_percent for r in records if r.noise_percent]
+    positive = [v for v in values if v > 0.0] or [1.0]
+    limits = (min(positive) / 1.3, max(positive) * 1.3)
+    half = len(records) if len(records) <= _IN_ONE else -(-len(records) // 2)
+    parts = [records[i : i + half] for i in range(0, len(records), half)]
+    return [
+        _rows(part, limits, height=half, name=f"errors-{i}")
+        for i, part in enumerate(parts, start=1)
+    ]
+
+
+def _rows(
+    records: Sequence[RecordCurves], limits: tuple[float, float], *, height: int, name: str
+) -> str:
     with house_style():
-        figure = new_figure(min(1120, max(420, 160 + 34 * len(records))), 300)
+        figure = new_figure(620, 96 + _ROW * max(height, 3))
         axes = figure.add_subplot()
-        axes.set_yscale("log")
+        axes.set_xscale("log")
+        axes.set_xlim(*limits)
         floors = [(i, r.noise_percent) for i, r in enumerate(records) if r.noise_percent]
-        for position, floor in floors:
+        axes.plot(
+            [floor for _, floor in floors],
+            [i for i, _ in floors],
+            linestyle="none",
+            marker="|",
+            markersize=11,
+            markeredgewidth=2.2,
+            color=MUTED,
+            label="noise floor",
+        )
+        for row, record in enumerate(records):
+            floor = record.noise_percent or limits[0]
             axes.plot(
-                [position - 0.42, position + 0.42],
-                [floor, floor],
-                color=MUTED,
-                linewidth=2.2,
-                solid_capstyle="butt",
-                label="noise floor" if position == floors[0][0] else None,
+                [floor, record.relative_error_percent or floor],
+                [row, row],
+                color="#c5cdd6",
+                linewidth=1.6,
+                zorder=1,
             )
         for structure, held_out in sorted({(r.structure, r.held_out) for r in records}):
             group = [
-                (i, r.relative_error_percent)
+                (r.relative_error_percent, i)
                 for i, r in enumerate(records)
                 if (r.structure, r.held_out) == (structure, held_out)
             ]
             axes.plot(*zip(*group, strict=True), **record_marker(structure, held_out=held_out))
-        axes.set_xlim(-0.8, len(records) - 0.2)
-        axes.set_ylabel("‖error‖ / ‖force‖ (%)")
-        plain_log_axis(axes, which="y")
-        every = max(1, -(-len(records) // 48))
-        ticks = range(0, len(records), every)
-        axes.set_xticks(ticks, [_label(records[i]) for i in ticks], rotation=90)
-        axes.tick_params(axis="x", labelsize=7.5, length=2)
-        axes.grid(visible=False, axis="x")
-        figure.legend(loc="outside upper left", ncols=6, columnspacing=1.2, handletextpad=0.4)
-        return to_svg(figure, name="errors", title="Relative error of each record and its noise")
+        axes.set_ylim(max(height, len(records), 3) - 0.4, -0.6)
+        axes.set_yticks(range(len(records)), [_label(r) for r in records])
+        axes.tick_params(axis="y", length=0, labelsize=9, labelcolor=INK)
+        axes.grid(visible=False, axis="y")
+        axes.spines["left"].set_visible(False)
+        plain_log_axis(axes, which="x")
+        axes.set_xlabel("‖error‖ / ‖force‖ (%)")
+        figure.legend(loc="outside upper left", ncols=3, columnspacing=1.2, handletextpad=0.4)
+        return to_svg(figure, name=name, title="Relative error of each record and its noise")
 
 
 def _label(record: RecordCurves) -> str:
     if record.frequency and record.amplitude:
         return f"{record.frequency:.3g} Hz, {1e3 * record.amplitude:.3g} mm"
-    return record.file if len(record.file) <= 22 else record.file[:21] + "…"
+    if len(record.file) <= _LONGEST_NAME:
+        return record.file
+    return record.file[: _LONGEST_NAME - 1] + "…"

@@ -7,6 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from discover.plots.design import prices, sections
 from discover.plots.design_front import design_front
 from discover.report.environment import render
 from discover.report.verdict import named_line
@@ -57,12 +58,17 @@ def design_lines(document: Mapping[str, Any]) -> tuple[str, ...]:
         f"{significant(document['parasitic_damping'], 3)} N s/m against "
         f"{significant(document['baseline']['parasitic_damping'], 3)}.",
         f"Held by: {listed(held) if held else 'no bound'}.",
+        *([f"On the rig: {document['loop']['text']}"] if document.get("loop") else []),
     )
 
 
 def design_figures(document: Mapping[str, Any]) -> dict[str, str]:
     """Return the design's pictures by name, each one ``<svg>`` element."""
-    drawn = {"front": design_front(document)}
+    drawn = {
+        "sections": sections(document),
+        "front": design_front(document),
+        "prices": prices(document),
+    }
     return {name: svg for name, svg in drawn.items() if svg is not None}
 
 
@@ -101,7 +107,6 @@ def design_report(document: Mapping[str, Any], figures: Mapping[str, str], *, co
         )
         for convention in ("paper", "standard")
     ]
-    buys = sorted(document["elasticities"].items(), key=lambda item: -abs(item[1]))
     verdict = [named_line(line) for line in design_lines(document)]
     return render(
         "design.html",
@@ -110,8 +115,9 @@ def design_report(document: Mapping[str, Any], figures: Mapping[str, str], *, co
         document=document,
         verdict=verdict,
         rows=rows,
-        buys=[(name.replace("_", " "), value) for name, value in buys if value],
         front=Markup(figures.get("front", "")),
+        sections=Markup(figures["sections"]),
+        prices=Markup(figures["prices"]),
         turbulent=best is not None and best["turbulent_at_duty"],
     )
 

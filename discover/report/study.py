@@ -30,8 +30,9 @@ def study_figures(document: Mapping[str, Any], data: StudyFigureData) -> dict[st
     drawn = {
         "map": record_map(document, data),
         "probabilities": probability_bars(document, data),
-        "errors": error_by_record(data),
     }
+    for number, svg in enumerate(error_by_record(data), start=1):
+        drawn[f"errors-{number}"] = svg
     for number, record in enumerate(representative(data.records), start=1):
         drawn[f"loops-{number}"] = loops(record, name=f"loops-{number}")
     return {name: svg for name, svg in drawn.items() if svg is not None}
@@ -71,9 +72,8 @@ def study_report(
         document_name="study.json",
         document=document,
         verdict=verdict,
-        figures={
-            name: Markup(figures.get(name, "")) for name in ("map", "probabilities", "errors")
-        },
+        figures={name: Markup(figures.get(name, "")) for name in ("map", "probabilities")},
+        errors=[Markup(svg) for name, svg in figures.items() if name.startswith("errors-")],
         map_caption=_map_caption(document, data),
         boundaries=boundaries,
         loops=pictures,

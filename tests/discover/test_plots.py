@@ -83,7 +83,20 @@ def test_loops_show_both_curves_in_prefixed_units():
 def test_file_names_are_shown_as_they_are_not_as_formulas():
     record = dataclasses.replace(sample_data().records[0], file="a_$x$<1>.csv", frequency=None)
     data = dataclasses.replace(sample_data(), records=(record,))
-    assert "a_$x$<1>.csv" in words(error_by_record(data))
+    assert "a_$x$<1>.csv" in words(error_by_record(data)[0])
+
+
+def test_errors_show_each_record_once_in_two_pictures_with_one_axis():
+    data = sample_data()
+    pictures = error_by_record(data)
+    assert len(pictures) == 2
+    rows = [w for svg in pictures for w in words(svg) if w.endswith(" mm")]
+    assert len(rows) == len(set(rows)) == len(data.records)
+    axes = [[w for w in words(svg) if w.replace(".", "").isdigit()] for svg in pictures]
+    assert axes[0] == axes[1]
+    few = dataclasses.replace(data, records=data.records[:3])
+    assert len(error_by_record(few)) == 1
+    assert error_by_record(dataclasses.replace(data, records=())) == []
 
 
 def test_a_few_records_cover_bands_and_a_held_out_one():
