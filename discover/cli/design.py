@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -47,6 +47,10 @@ def design(
     package_length: Annotated[
         str | None, typer.Option("--package-length", help="Height of the helix, likewise.")
     ] = None,
+    pressure: Annotated[
+        str | None,
+        typer.Option("--pressure", help="Largest pressure difference over the piston, as '5 MPa'."),
+    ] = None,
     fluids: Annotated[
         str | None,
         typer.Option(
@@ -55,14 +59,24 @@ def design(
             help="What may be filled in: own, water, oil-vg-2 to oil-vg-46 [default: own].",
         ),
     ] = None,
+    verify: Annotated[
+        bool,
+        typer.Option(
+            "--verify/--no-verify",
+            help="Test the design on the virtual rig and discover from its records whether one"
+            " FOIM serves.",
+        ),
+    ] = True,
     out: options.Out = None,
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
+    jobs: options.Jobs = 1,
 ) -> int:
     """Find the geometry and fluid with the lowest critical frequency within bounds.
 
     Exits 1 where nothing fits; the result then says which bounds keep every design out.
     """
+    from discover.cli.design_loop import close_loop
     from discover.cli.known_device import known_device
     from discover.readers.units import quantity
     from discover.report.design import design_figures, design_lines, design_report
@@ -90,8 +104,9 @@ def design(
         "inertance": (inertance, "mass"),
         "package_radius": (package_radius, "length"),
         "package_length": (package_length, "length"),
+        "pressure": (pressure, "pressure"),
     }
-    chosen = {
+    chosen: dict[str, Any] = {
         key: quantity(text, kind, name=key, where="--" + key.replace("_", "-"))
         for key, (text, kind) in stated.items()
         if text is not None
@@ -106,12 +121,16 @@ def design(
             fluids={name: offered[name] for name in names},
             seed=seed,
         )
+    with working("Testing the design on the virtual rig"):
+        loop = close_loop(result, seed=seed, jobs=jobs) if verify else None
+    with working("Drawing"):
         document = {
             "schema": "inerter.design/1",
             "version": __version__,
             "seed": seed,
             "campaign": {"title": f"Rough design from {Path(device).name}", "hash": ""},
             **result.to_dict(),
+            "loop": loop,
         }
         figures = design_figures(document)
         invocation: Invocation = context.obj

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from matplotlib.axes import Axes
 
 from discover.plots.style import (
@@ -19,13 +21,13 @@ from discover.reproduction.figures import Panel, PaperFigure
 from discover.reproduction.orders import OrderCurve, OrderPoint
 from discover.reproduction.tables import ComparisonRow
 
-_CURVES = {
+_CURVES: dict[str, dict[str, Any]] = {
     "IOIM": {"color": INK, "linewidth": 1.7},
     "FOIM (M1)": {"color": "#009e73", "dashes": (2, 1.5)},
     "FOIM (M2)": {"color": MODEL, "dashes": (5, 2)},
     "FOIM (M3)": {"color": ACCENT, "dashes": (5, 2)},
 }
-_NUMBERS = {
+_NUMBERS: dict[str, dict[str, Any]] = {
     "[12], 5 mm": {"color": MODEL},
     "[12], 10 mm": {"color": MODEL, "dashes": (4, 2)},
     "[10], 5 mm": {"color": ACCENT},

@@ -24,6 +24,7 @@ SI_UNITS = {
     "stiffness": "N/m",
     "density": "kg/m^3",
     "dynamic viscosity": "Pa*s",
+    "pressure": "Pa",
     "temperature": "K",
 }
 """Every kind of quantity that a campaign may hold, with its SI unit."""
@@ -32,7 +33,6 @@ _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![.\d])")
 _OTHER = {
     "m^2/s": "kinematic viscosity",
     "m^2": "area",
-    "Pa": "pressure",
     "N*m": "torque or energy",
     "V": "voltage",
     "A": "current",
