@@ -74,6 +74,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         result = typer.main.get_command(app).main(
             args=list(given), prog_name="inerter", standalone_mode=False, obj=Invocation(given)
         )
+        if result == INTERRUPTED:  # newer typer turns the interrupt into this code by itself
+            raise KeyboardInterrupt
         sys.stdout.flush()
     except InputError as error:
         return _complain(str(error), BAD_INPUT)

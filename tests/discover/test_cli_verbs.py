@@ -1,0 +1,153 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from discover.cli import main
+from models.constitutive import SegmentedModel
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    """Four exact laminar records with little noise, one of them held out."""
+    folder = tmp_path_factory.mktemp("campaigns") / "laminar"
+    plan = ["--frequencies", "0.5,1,2,4", "--amplitudes", "10", "--held-out", "1"]
+    arguments = ["--device", "device-12", "--model", "ioim-laminar", "--noise", "0.5%", *plan]
+    assert main(["synth", str(folder), *arguments]) == 0
+    return folder
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_discover_prints_five_lines_and_the_report_and_writes_the_folder(campaign, here, capsys):
+    assert main(["discover", str(campaign)]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    lines = out.splitlines()
+    names = [line.split(":")[0] for line in lines]
+    assert names == ["Structure", "Accuracy", "Certainty", "Dean check", "Next test", "Report"]
+    folder = here / "inerter-out" / "discover-laminar"
+    assert lines[-1] == "Report: " + str(Path("inerter-out", "discover-laminar", "report.html"))
+    written = {p.name for p in folder.iterdir()} - {".inerter-files"}
+    assert written == {"study.json", "model.json", "report.html", "figures"}
+    assert all(p.suffix == ".svg" for p in (folder / "figures").iterdir())
+
+
+def test_json_is_the_document_and_nothing_else(campaign, here, capsys):
+    assert main(["discover", str(campaign), "--json", "-o", "out", "--seed", "3"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert out == (here / "out" / "study.json").read_text()
+    document = json.loads(out)
+    assert (document["schema"], document["seed"]) == ("inerter.study/1", 3)
+    assert "inerter discover" in (here / "out" / "report.html").read_text()
+
+
+def test_the_written_model_is_the_device_that_made_the_records(campaign, here):
+    assert main(["discover", str(campaign), "-o", "out"]) == 0
+    model = SegmentedModel.from_dict(json.loads((here / "out" / "model.json").read_text()))
+    assert len(model.bands) == 1
+    assert model.bands[0].model.coefficient("inertia") == pytest.approx(370.38, rel=0.01)
+
+
+def test_only_the_terms_asked_for_are_kept(campaign, here, capsys):
+    terms = "inertia,viscous-damping,force-offset"
+    assert main(["discover", str(campaign), "--terms", terms, "--json", "--bands", "1"]) == 0
+    (band,) = json.loads(capsys.readouterr().out)["bands"]
+    assert {t["id"] for t in band["terms"]} == set(terms.split(","))
+
+
+def test_an_unknown_term_is_named_with_those_that_there_are(campaign, here, capsys):
+    assert main(["discover", str(campaign), "--terms", "inertia,drag"]) == 2
+    assert "'drag'" in (err := capsys.readouterr().err)
+    assert "viscous-damping" in err
+    assert not (here / "inerter-out").exists()
+
+
+def test_check_passes_good_records_and_writes_its_document(campaign, here, capsys):
+    assert main(["check", str(campaign), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    stored = json.loads((here / "inerter-out" / "check-laminar" / "check.json").read_text())
+    assert stored == document
+    assert [r["kind"] for r in document["records"]] == ["sine"] * 4
+    found = [r["frequency_hz"] for r in document["records"]]
+    assert found == pytest.approx([0.5, 1.0, 2.0, 4.0], rel=1e-3)
+    noise = [r["force_noise_percent"] for r in document["records"]]
+    assert np.mean(noise) == pytest.approx(0.5, rel=0.15)
+
+
+def test_check_fails_where_the_force_has_the_wrong_sign(campaign, here, capsys):
+    turned = here / "turned"
+    turned.mkdir()
+    for path in campaign.iterdir():
+        text = path.read_text()
+        if path.suffix == ".csv":
+            head, *rows = text.splitlines()
+            parts = [row.rsplit(",", 1) for row in rows]
+            text = "\n".join([head, *(f"{a},{-float(f)!r}" for a, f in parts)]) + "\n"
+        (turned / path.name).write_text(text)
+    assert main(["check", str(turned)]) == 1
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert "Error: " in out
+    assert out.splitlines()[-2] == "Check: failed."
+
+
+@pytest.mark.parametrize("verb", ["check", "discover"])
+def test_a_campaign_that_is_not_there_is_bad_input(verb, here, capsys):
+    assert main([verb, "nowhere"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "nowhere" in err
+    assert err.count("\n") == 1
+
+
+def test_a_record_that_is_not_what_its_label_says_is_bad_input(campaign, here, capsys):
+    wrong = here / "wrong"
+    wrong.mkdir()
+    for path in campaign.iterdir():
+        text = path.read_text().replace('frequency = "2 Hz"', 'frequency = "3 Hz"')
+        (wrong / path.name).write_text(text)
+    assert main(["discover", str(wrong)]) == 2
+    err = capsys.readouterr().err
+    assert "2hz-10mm.csv" in err
+    assert "frequency" in err
+    assert "Traceback" not in err
+
+
+def test_results_never_go_into_a_folder_with_other_things(campaign, here, capsys):
+    assert main(["check", str(campaign), "-o", str(campaign)]) == 2
+    assert "earlier results" in capsys.readouterr().err
+    assert tomllib.loads((campaign / "campaign.toml").read_text())["title"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT for another process")
+def test_ctrl_c_exits_130_without_a_traceback_and_leaves_no_results(here):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "discover", "discover", "-o", "out"],
+        cwd=here,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert out == ""
+    assert err == "inerter: interrupted\n"
+    assert list(here.iterdir()) == []
