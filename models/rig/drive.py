@@ -59,6 +59,11 @@ class Drive:
         """True for the steady state of a sine test."""
         return self.point.kind == "sine"
 
+    @property
+    def passes(self) -> int:
+        """How often memory runs through the window: until steady, or once from rest."""
+        return 2 if self.periodic else 1
+
     def sample(self, values: Array) -> Array:
         """Return the values (M,) at the sample times of a periodic function on the grid (G,)."""
         place = np.mod((self.time + self.phase) / self.step, values.size)

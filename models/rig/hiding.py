@@ -113,7 +113,7 @@ def _search(reached: Callable[[float], float], size: float, start: float, *, nam
             high, above = low, below
             low -= stride
             below = off(low)
-        stride *= 1.3
+        stride = min(1.3 * stride, 3.0)
     side = 0
     while min(tried.values()) > _PRECISION and len(tried) < 2 * _EVALUATIONS and high - low > 1e-4:
         share = below / (below - above) if side < 3 and side > -3 else 0.5

@@ -156,7 +156,9 @@ def fluid_force(law: FlowLaw, drive: Drive) -> Array:
 def seal_force(law: FlowLaw, drive: Drive) -> Array:
     """Return the seals' friction (G,) on the drive's grid, N."""
     if law.physics.seal == "dynamic":
-        return presliding_friction(drive.position, drive.velocity, seal=law.seal)
+        return presliding_friction(
+            drive.position, drive.velocity, seal=law.seal, passes=drive.passes
+        )
     return smooth_friction(law.seal, drive.velocity)
 
 

@@ -60,7 +60,7 @@ def presliding_friction(
     seal : Seal
         Its properties.
     passes : int
-        Periods that are run; the last is returned.
+        Periods that are run from rest; the last is returned.
 
     References
     ----------

@@ -105,6 +105,10 @@ def _start_play(scales: Scales) -> float:
     return 0.01 * scales.displacement
 
 
+def _start_limit(scales: Scales) -> float:
+    return 1.5 / scales.force
+
+
 def _make_up(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # One chamber tears at its vapour pressure: the void opens at constant force while a make-up
     # valve lets oil in, and what is left of it must close before the force returns.
@@ -119,22 +123,29 @@ def _make_up(bench: Bench, force: Array, amount: float, values: Values) -> Array
 
 
 def _draw_make_up(rng: Generator, scales: Scales) -> dict[str, float]:
-    refill = rng.uniform(0.02, 0.05) / scales.high_frequency
+    refill = rng.uniform(0.004, 0.01) / scales.high_frequency
     return _draw_contact(rng, scales) | {"refill_time": refill}
 
 
 def _degassing(bench: Bench, force: Array, amount: float, values: Values) -> Array:
-    # Air comes out of solution on one side: the force levels off without a corner.
-    limit = 1.0 / amount
-    sharp = values["sharpness"]
-    return np.asarray(
-        limit / sharp * np.logaddexp(0.0, -sharp * (force / limit + 1.0))
-        - limit / sharp * math.log1p(math.exp(-sharp))
+    # Air comes out of solution in one chamber: the pull levels off without a corner, and oil
+    # flows in slowly.
+    limit, sharp = 1.0 / amount, values["sharpness"]
+    if float(np.min(bench.stiff_fluid)) > -0.6 * limit:
+        return np.zeros(force.size)
+    stiffness, damping = _contact(bench, values)
+    pull = np.concatenate([[-100.0], np.linspace(-2.5, 0.5, 241), [100.0]])
+    load = np.logaddexp(0.0, sharp * (pull + 1.0)) / sharp - 1.0 + 1e-6 * pull
+    element = Element(
+        pull * limit / stiffness, limit * load, damping, values["refill_time"], -limit / stiffness
     )
+    return _inside(bench, element)
 
 
 def _draw_degassing(rng: Generator, scales: Scales) -> dict[str, float]:
-    return {"sharpness": rng.uniform(8.0, 15.0)}
+    refill = rng.uniform(0.015, 0.03) / scales.high_frequency
+    drawn = {"sharpness": rng.uniform(8.0, 15.0), "refill_time": refill}
+    return _draw_contact(rng, scales) | drawn
 
 
 EFFECTS = (
@@ -190,18 +201,18 @@ EFFECTS = (
         _draw_make_up,
         linear=False,
         acts="input",
-        start=lambda scales: 1.5 / scales.force,
+        start=_start_limit,
         unit="1/N",
     ),
     Effect(
         "cavitation",
         "degassing",
-        "pull levels off at a limit without a corner as air leaves solution",
+        "pull levels off without a corner as air leaves solution, oil flows in slowly; in time",
         _degassing,
         _draw_degassing,
         linear=False,
         acts="input",
-        start=lambda scales: 1.5 / scales.force,
+        start=_start_limit,
         unit="1/N",
     ),
 )

@@ -31,7 +31,9 @@ def _along(bench: Bench, values: Values, *, breakaway: float) -> Array:
         presliding=values["presliding"],
     )
     drive = bench.drive
-    return drive.sample(presliding_friction(drive.position, drive.velocity, seal=seal))
+    return drive.sample(
+        presliding_friction(drive.position, drive.velocity, seal=seal, passes=drive.passes)
+    )
 
 
 def _draw_reversal(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -89,7 +91,9 @@ def _draw_bore(rng: Generator, scales: Scales) -> dict[str, float]:
 def _iwan(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     position = bench.drive.position
     limits = values["yield"] * np.linspace(0.3, 1.7, 12)
-    return bench.drive.sample(np.asarray(amount / values["yield"] * _slip(position, limits, 2)))
+    return bench.drive.sample(
+        np.asarray(amount / values["yield"] * _slip(position, limits, bench.drive.passes))
+    )
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
@@ -110,7 +114,7 @@ def _slip(x: Array, limits: Array, passes: int) -> Array:
 
 def _bouc_wen(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     steps = np.diff(bench.drive.position, prepend=bench.drive.position[-1]) / values["yield"]
-    state = _wen(steps, values["sharpness"], values["pinch"], 2)
+    state = _wen(steps, values["sharpness"], values["pinch"], bench.drive.passes)
     return bench.drive.sample(np.asarray(amount * state))
 
 

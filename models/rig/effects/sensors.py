@@ -24,6 +24,10 @@ def _delay(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     return np.asarray(CubicSpline(bench.t, force)(bench.t - amount) - force)
 
 
+def _start_delay(scales: Scales) -> float:
+    return 0.01 / scales.high_frequency
+
+
 def _gain(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     return np.asarray(amount * values["sign"] * force)
 
@@ -54,10 +58,15 @@ def _draw_drift(rng: Generator, scales: Scales) -> dict[str, float]:
     return _draw_sign(rng, scales) | {"time": scales.duration * rng.uniform(0.3, 1.0)}
 
 
+def _start_rail(scales: Scales) -> float:
+    return 1.3 / scales.force
+
+
 def _soft_rail(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # An amplifier that runs into its supply: rounded, from force/limit = 0.8 or so.
     n = values["sharpness"]
-    return np.asarray(force * ((1.0 + (np.abs(force) * amount) ** n) ** (-1.0 / n) - 1.0))
+    level = n * np.log(np.maximum(np.abs(force) * amount, 1e-30))
+    return np.asarray(force * np.expm1(-np.logaddexp(0.0, level) / n))
 
 
 def _draw_soft_rail(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -89,7 +98,7 @@ EFFECTS = (
         _delay,
         linear=False,
         acts="output",
-        start=lambda scales: 0.01 / scales.high_frequency,
+        start=_start_delay,
         unit="s",
     ),
     Effect(
@@ -136,7 +145,7 @@ EFFECTS = (
         _draw_soft_rail,
         linear=False,
         acts="output",
-        start=lambda scales: 1.3 / scales.force,
+        start=_start_rail,
         unit="1/N",
     ),
     Effect(
@@ -147,7 +156,7 @@ EFFECTS = (
         _draw_rails,
         linear=False,
         acts="output",
-        start=lambda scales: 1.3 / scales.force,
+        start=_start_rail,
         unit="1/N",
     ),
 )
