@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-import functools
 import math
 
 import numpy as np
 import scipy.fft
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.signal.windows import kaiser
 
 from models.checks import number
+from models.fractional.continuation import continue_record, end_fit
 from models.fractional.orders import Array, checked_orders, checked_record
 from models.fractional.spectral import TRANSITION, harmonic_factors, low_pass_gain
 
 # Lengths at each end, in periods of the cut-off: fitted, and added beyond the record.
 _FITTED = 6.0
 _ADDED = 5.0
+# A start that moves less than this share of the whole record is at rest.
+_QUIET = 0.05
+_LEAST_NOISE = 1e-6
 _KAISER = 18.0
 # Power over the noise floor that chance alone does not reach.
 _CLEAR = 20.0
-# Samples per period of the cut-off that the fit at the ends uses; a finer record is thinned.
-_DENSITY = 256.0
 
 
-def low_pass(y: ArrayLike, dt: float, *, cutoff: float, edge_noise: float = 1e-3) -> Array:
+def low_pass(y: ArrayLike, dt: float, *, cutoff: float, edge_noise: float | None = None) -> Array:
     """Smooth records with the filter that `band_limited_derivative` uses, without phase.
 
     Parameters
@@ -36,7 +37,9 @@ def low_pass(y: ArrayLike, dt: float, *, cutoff: float, edge_noise: float = 1e-3
     cutoff : float
         Hz: all passes up to here, nothing above twice that.
     edge_noise : float, optional
-        Noise over signal that the extension beyond the ends reckons with.
+        Noise over signal that the extension beyond the ends reckons with; by default the
+        share of the record above the filter. Given a value, the result is linear in the record
+        up to its ends.
 
     Returns
     -------
@@ -61,14 +64,14 @@ def low_pass(y: ArrayLike, dt: float, *, cutoff: float, edge_noise: float = 1e-3
 
 
 def band_limited_derivative(
-    x: ArrayLike, orders: ArrayLike, dt: float, *, cutoff: float, edge_noise: float = 1e-3
+    x: ArrayLike, orders: ArrayLike, dt: float, *, cutoff: float, edge_noise: float | None = None
 ) -> Array:
     r"""Differentiate records of any shape below a cut-off frequency.
 
     Each end is continued by the band-limited motion that fits it best (regularised least
-    squares) and fades to the level
-    of its first few cycles; then the spectrum is multiplied by
-    :math:`(i\omega)^\alpha` and a smooth low-pass. So nothing wraps round and no phase is lost.
+    squares), fading to the level that the motion has in the mean, or starts from at rest. Then
+    the spectrum is multiplied by :math:`(i\omega)^\alpha` and a smooth low-pass. So nothing
+    wraps round and no phase is lost.
 
     Parameters
     ----------
@@ -81,14 +84,16 @@ def band_limited_derivative(
     cutoff : float
         Hz: all passes up to here, nothing above twice that. See `noise_cutoff`.
     edge_noise : float, optional
-        Noise over signal that the extension beyond the ends reckons with.
+        Noise over signal that the extension beyond the ends reckons with; by default the
+        share of the record above the filter. Given a value, the result is linear in the record
+        up to its ends.
 
     Returns
     -------
     ndarray, shape (K, ..., N)
-        The derivative from minus infinity (Weyl) of a motion that rested at the level of
-        its first few cycles before its start. Within about 1/cutoff (s) of the ends the result
-        rests on the extension; orders below 1 remember the unknown past for longer.
+        The derivative from minus infinity (Weyl) of a motion that was at that level before its
+        start. Within about 1/cutoff (s) of the ends the result rests on the extension; orders
+        below 1 remember the unknown past for longer.
 
     Raises
     ------
@@ -106,20 +111,27 @@ def band_limited_derivative(
     values, step = checked_record(x, dt, min_samples=4)
     alpha, _ = checked_orders(orders)
     limit = number("cutoff", cutoff, above=0.0, at_most=0.5 / step)
-    ratio = number("edge_noise", edge_noise, above=0.0)
+    if edge_noise is not None:
+        number("edge_noise", edge_noise, above=0.0)
     samples = values.shape[-1]
     rows = values.reshape(-1, samples)
     added = max(int(math.ceil(_ADDED / (limit * step))), 4)
     fitted = min(samples, max(int(math.ceil(_FITTED / (limit * step))), 8))
-    # Before the record, and far behind it, the motion rests at the level of its start.
-    level = rows[:, :fitted].mean(axis=1, keepdims=True)
+    level = _level(rows, fitted)
     centred = rows - level
-    after = _continuation(fitted, added, limit * step, ratio)
+    ratio = _out_of_band(centred, limit * step)
+    if edge_noise is not None:
+        ratio[:] = edge_noise
+    fit = end_fit(fitted, added, limit * step)
     length = int(scipy.fft.next_fast_len(2 * samples + 2 * added, real=True))
     extended = np.zeros((rows.shape[0], length))
     extended[:, :samples] = centred
-    extended[:, samples : samples + added] = _continue(centred[:, samples - fitted :], after)
-    extended[:, length - added :] = _continue(centred[:, :fitted][:, ::-1], after)[:, ::-1]
+    extended[:, samples : samples + added] = continue_record(
+        centred[:, samples - fitted :], fit, ratio
+    )
+    extended[:, length - added :] = continue_record(
+        centred[:, :fitted][:, ::-1], fit, ratio
+    )[:, ::-1]
     frequency = scipy.fft.rfftfreq(length, step)
     factors = harmonic_factors(alpha, 2.0 * np.pi * frequency) * low_pass_gain(frequency, limit)
     spectrum = scipy.fft.rfft(extended, axis=-1)
@@ -131,40 +143,24 @@ def band_limited_derivative(
     return out.reshape(alpha.size, *values.shape)
 
 
-@functools.lru_cache(maxsize=32)
-def _continuation(
-    fitted: int, added: int, band: float, ratio: float
-) -> tuple[NDArray[np.intp], Array, Array]:
-    """Nodes (M,), projector (F, M) and continuation (added, F) of the fit at an end.
+def _out_of_band(centred: Array, band: float) -> Array:
+    """Rms of what the low-pass removes altogether, over the rms of all, (R,)."""
+    samples = centred.shape[1]
+    power = np.abs(scipy.fft.rfft(centred * kaiser(samples, _KAISER, sym=False))) ** 2
+    above = power[:, scipy.fft.rfftfreq(samples) > TRANSITION * band].sum(axis=1)
+    share = np.sqrt(above / np.maximum(power.sum(axis=1), 1e-300))
+    return np.asarray(np.clip(share, _LEAST_NOISE, 1.0))
 
-    The prior is a flat spectrum up to the cut-off (`band`, cycles per sample) that falls to
-    nothing at the filter's upper end; the ridge is what noise of `ratio` calls for.
+
+def _level(rows: Array, fitted: int) -> Array:
+    """Level before the record and far behind it, (R, 1).
+
+    A record that starts at rest was at rest before; any other one moves about its mean.
     """
-    period = fitted + 2.0 * added
-    count = int(math.floor(TRANSITION * band * period))
-    frequency = np.arange(1, count + 1) / period
-    shape = np.maximum(np.sqrt(2.0 * low_pass_gain(frequency, band)), 1e-6)
-    prior = np.concatenate([[1.0], shape, shape])
-
-    def features(n: Array) -> Array:
-        angle = 2.0 * np.pi * n[:, None] * frequency
-        columns = np.concatenate([np.ones((n.size, 1)), np.cos(angle), np.sin(angle)], axis=1)
-        return np.asarray(columns * prior)
-
-    nodes = np.arange(fitted - 1, -1, -max(1, int(1.0 / (_DENSITY * band))))[::-1]
-    inside = features(np.asarray(nodes + 1.0 - fitted, dtype=np.float64))
-    outside = features(np.arange(1.0, added + 1.0))
-    ridge = ratio * math.sqrt(float(prior @ prior))
-    left, values, right = np.linalg.svd(inside, full_matrices=False)
-    projector = (right.T * (values / (values**2 + ridge**2))) @ left.T
-    fade = low_pass_gain(np.arange(1.0, added + 1.0), 0.5 * added)
-    return nodes, projector, outside * fade[:, None]
-
-
-def _continue(end: Array, operators: tuple[NDArray[np.intp], Array, Array]) -> Array:
-    """Continue records beyond their last sample."""
-    nodes, projector, continuation = operators
-    return np.asarray(end[:, nodes] @ projector.T @ continuation.T)
+    start = rows[:, :fitted]
+    quiet = start.std(axis=1) <= _QUIET * rows.std(axis=1)
+    level: Array = np.where(quiet, start.mean(axis=1), rows.mean(axis=1))
+    return level[:, None]
 
 
 def noise_cutoff(x: ArrayLike, dt: float, order: float = 2.0) -> float:

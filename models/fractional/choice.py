@@ -61,7 +61,9 @@ def expected_truncation(measured: Roughness, orders: Array, p: int) -> Array:
     >>> bool(0.01 < expected_truncation(measured, np.array([1.5]), 1)[0] < 0.05)
     True
     """
-    ratio = measured.differences[p - 1] / max(measured.size, 1e-300)
+    size = max(measured.size, 1e-300)
+    # The second holds for what is smooth but for its start, as a ramp is.
+    ratio = max(measured.differences[p - 1] / size, (measured.differences[0] / size) ** p)
     return np.asarray(np.abs(symbol_series(orders, p)[:, p]) * ratio)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import bernoulli, rgamma
 
 from models.fractional.orders import Array
-from models.fractional.weights import convolution_weights
+from models.fractional.weights import convolution_weights, symbol_series
 
 POWERS = 6
 """Powers of time made exact, from t^0 on: as many as the highest order of convergence."""
@@ -64,7 +64,9 @@ def head_corrections(orders: tuple[float, ...], p: int, count: int) -> Array:
     -------
     ndarray, shape (K, count, 128)
         :math:`\frac{k!}{\Gamma(k+1-\alpha)}n^{k-\alpha}` less the scheme's result on
-        n^k + e_k; at n = 0 the finite part is the exact value.
+        n^k + e_k, but for those parts of the scheme's error that are smooth from the start on:
+        they are its order of convergence, and taking them off here would leave a step behind.
+        At n = 0 the finite part is the exact value.
 
     Examples
     --------
@@ -79,8 +81,15 @@ def head_corrections(orders: tuple[float, ...], p: int, count: int) -> Array:
     lags = np.arange(HEAD_SAMPLES)
     shifts = lags[:, None] - lags[None, :]
     causal = np.where(shifts >= 0, weights[:, np.abs(shifts)], 0.0)
-    exact = np.array([[power_derivative(k, a, n) for k in range(count)] for a in orders])
-    rest: Array = exact - np.einsum("anm,km->akn", causal, sequences, optimize=True)
+    series = symbol_series(np.array(orders), p)
+    wanted = np.zeros((len(orders), count, HEAD_SAMPLES))
+    for i, order in enumerate(orders):
+        for k in range(count):
+            wanted[i, k] = power_derivative(k, order, n)
+            for j in range(p, k + 1):
+                if k - j >= order:
+                    wanted[i, k] += series[i, j] * power_derivative(k, order + j, n)
+    rest: Array = wanted - np.einsum("anm,km->akn", causal, sequences, optimize=True)
     rest.setflags(write=False)
     return rest
 

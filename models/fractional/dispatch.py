@@ -193,9 +193,7 @@ def _steady(task: _Task, choice: Choice) -> Array:
         each = [harmonic_derivative(fit, orders, dt, rows.shape[1]) for fit in choice.fits]
         return np.stack(each, axis=1)
     if choice.scheme == "band-limited" and choice.cutoff is not None:
-        return band_limited_derivative(
-            rows, orders, dt, cutoff=choice.cutoff, edge_noise=_ratio(rows)
-        )
+        return band_limited_derivative(rows, orders, dt, cutoff=choice.cutoff)
     return spectral_derivative(rows, orders, dt, cutoff=choice.cutoff)
 
 
@@ -228,16 +226,8 @@ def _smoothed(task: _Task, choice: Choice) -> Array | None:
         samples = task.rows.shape[1]
         return np.stack([harmonic_derivative(f, zero, task.dt, samples)[0] for f in choice.fits])
     if choice.scheme == "band-limited" and choice.cutoff is not None:
-        return low_pass(
-            task.rows, task.dt, cutoff=choice.cutoff, edge_noise=_ratio(task.rows)
-        )
+        return low_pass(task.rows, task.dt, cutoff=choice.cutoff)
     return None
-
-
-def _ratio(rows: Array) -> float:
-    """Noise over signal of the noisiest record."""
-    measured = [roughness(row) for row in rows]
-    return float(np.clip(max(m.noise / max(m.size, 1e-300) for m in measured), 1e-6, 0.1))
 
 
 def _causal(task: _Task, scheme: str, rows: Array, dt: float) -> Array:

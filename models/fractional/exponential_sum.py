@@ -71,7 +71,6 @@ def exponential_sum(
     longest = number("horizon", horizon, above=shortest)
     wanted = number("error", error, at_least=_TIGHTEST, at_most=0.1)
     times = np.geomspace(shortest, longest, 400)
-    # The kernel less a slowly varying factor, so that relative errors are read off directly.
     exact = times**-exponent / math.gamma(1.0 - exponent)
     reached = math.inf
     for step in np.geomspace(1.1, 1.0 / 3.2, 25) * math.pi**2 / max(-math.log(wanted), 1.0):

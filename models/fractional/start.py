@@ -23,7 +23,8 @@ def start_coefficients(x: Array, count: int) -> Array:
 
     A polynomial is fitted to windows from the first sample on whose widths double; the width
     kept is the one that leaves the least error in the slope, judged by the residual: longer
-    windows leave truncation, shorter ones amplify rounding and noise. So the width is a time
+    windows leave truncation (its neighbours go together), shorter ones amplify rounding and
+    noise. So the width is a time
     that the motion sets, and finer sampling does not shorten it.
 
     Parameters
@@ -52,9 +53,12 @@ def start_coefficients(x: Array, count: int) -> Array:
         window = x[nodes]
         modes = projector @ window
         residual = window - basis @ modes
-        spread = float(np.sqrt(residual @ residual / max(nodes.size - modes.size, 1)))
+        spare = max(nodes.size - modes.size, 1)
+        variance = float(residual @ residual) / spare
+        together = float(residual[1:] @ residual[:-1]) / spare
+        truncation = max(together - 2.0 * variance / np.sqrt(spare), 0.0)
         floor = 1e-16 * float(np.max(np.abs(window)))
-        judged = max(spread, floor) / (width * np.sqrt(nodes.size))
+        judged = np.sqrt(truncation + max(variance, floor**2) / nodes.size) / width
         if judged < best:
             best = judged
             fitted = monomials @ modes
