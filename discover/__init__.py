@@ -1,1 +1,34 @@
-"""Model discovery for fluid inerters: which structure holds, where, how surely, what it misses."""
+"""Model discovery for fluid inerters: which structure holds, where, how surely, what it misses.
+
+Examples
+--------
+>>> import discover
+>>> callable(discover.read_campaign) and callable(discover.run_study)
+True
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from discover._version import __version__
+
+if TYPE_CHECKING:
+    from discover.data_check import check_campaign
+    from discover.readers import read_campaign
+    from discover.study import StudyOptions, run_study
+
+__all__ = ["StudyOptions", "__version__", "check_campaign", "read_campaign", "run_study"]
+
+_HOMES = {
+    "StudyOptions": "discover.study",
+    "check_campaign": "discover.data_check",
+    "read_campaign": "discover.readers",
+    "run_study": "discover.study",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load what is asked for only then: the command's help need not wait for the numerics."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)

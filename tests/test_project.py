@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+import discover
 from discover._version import __version__
 
 ROOT = Path(__file__).parents[1]
@@ -93,3 +94,10 @@ def test_wheel_in_a_fresh_environment_studies_the_shipped_campaign(wheel, tmp_pa
     assert (results / "report.html").read_text().startswith("<!DOCTYPE html>")
     assert {p.name for p in (results / "figures").iterdir()} >= {"map.svg", "errors-1.svg"}
     assert json.loads((results / "model.json").read_text())["bands"]
+
+
+def test_the_library_gives_what_it_names():
+    assert all(callable(getattr(discover, n)) for n in discover.__all__ if n != "__version__")
+    assert discover.__version__ == __version__
+    with pytest.raises(AttributeError, match="no attribute 'read_campain'"):
+        discover.read_campain  # noqa: B018 - looking it up is the test
