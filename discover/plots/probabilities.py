@@ -77,7 +77,7 @@ def probability_bars(document: Mapping[str, Any], data: StudyFigureData) -> str 
         axes.grid(visible=False, axis="y")
         axes.spines["left"].set_visible(False)
         axes.set_xlabel("Probability of the structure (%)")
-        figure.legend(loc="outside upper left", ncols=5, handlelength=1.0, columnspacing=1.2)
+        figure.legend(loc="outside upper left", ncols=4, handlelength=1.0, columnspacing=1.2)
         return to_svg(figure, name="probabilities", title="Probability of each structure by band")
 
 

@@ -43,7 +43,7 @@ def record_map(document: Mapping[str, Any], data: StudyFigureData) -> str | None
     if not tests:
         return None
     with house_style():
-        figure = new_figure(660, 470)
+        figure = new_figure(660, 490)
         axes = figure.add_subplot()
         axes.set(xscale="log", yscale="log")
         _limits(axes, tests)
@@ -55,7 +55,7 @@ def record_map(document: Mapping[str, Any], data: StudyFigureData) -> str | None
         axes.set_ylabel("Displacement amplitude (mm)")
         plain_log_axis(axes, which="x")
         plain_log_axis(axes, which="y")
-        figure.legend(loc="outside upper left", ncols=4, handletextpad=0.3, columnspacing=1.2)
+        figure.legend(loc="outside upper left", ncols=3, handletextpad=0.4, columnspacing=1.4)
         return to_svg(figure, name="map", title="Map of the tests, coloured by structure")
 
 
