@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import zipfile
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 from scipy.io import loadmat
 
+from discover.readers.mat_guard import damage
 from discover.readers.source import Source, from_arrays, row_place
 from models.checks import Array, InputError
 
@@ -70,7 +70,7 @@ def open_npz(data: bytes, name: str) -> Source:
                 arrays[key] = archive[key]
     except InputError:
         raise
-    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile, TypeError) as error:
+    except Exception as error:  # numpy parses headers as Python: errors of many kinds
         raise InputError(
             "content", where=name, expected="an .npz archive", found=_first_line(error)
         ) from None
@@ -85,6 +85,9 @@ def open_mat(data: bytes, name: str) -> Source:
     InputError
         Where it is not such a file, is of version 7.3, or holds no numeric vector.
     """
+    damaged = damage(data)
+    if damaged:
+        raise InputError("content", where=name, expected="a whole MATLAB file", found=damaged)
     try:
         content = loadmat(io.BytesIO(data), simplify_cells=True)  # type: ignore[arg-type]  # stubs
     except NotImplementedError:

@@ -25,6 +25,7 @@ QUANTITIES = {
 }
 """The columns that a record may have, each with the kind of its unit."""
 
+_LARGEST = 1e30  # whose square, and the sum of squares, is still a number
 _HEADER = re.compile(r"\s*(.*?)\s*(?:\[([^\]]*)\]|\(([^():,]*)\))?\s*", re.DOTALL)
 
 
@@ -166,13 +167,13 @@ def _unit_of(source: Source, index: int, quantity: str, stated: str | None) -> s
 
 
 def _check_finite(source: Source, index: int, column: Array) -> None:
-    bad = np.flatnonzero(~np.isfinite(column))
+    bad = np.flatnonzero(~(np.abs(column) < _LARGEST))
     if bad.size:
         more = f" ({bad.size} such values)" if bad.size > 1 else ""
         raise InputError(
             source.headers[index],
             expected="a finite number throughout",
-            found=f"{column[bad[0]]}{more}",
+            found=f"{column[bad[0]]:.6g}{more}",
             where=f"{source.name} {source.place(int(bad[0]))}",
         )
 

@@ -96,17 +96,18 @@ def derivative_agreement(
     x = displacement - displacement.mean()
     omega = 2.0 * np.pi * np.fft.rfftfreq(size, step)
     plain, first = np.fft.rfft(window * x), np.fft.rfft(slope * x)
+    found = np.fft.rfft(window * measured)
     if order == 1:
         computed = 1j * omega * plain - first
-        found = np.fft.rfft(window * measured)
     else:
         computed = np.fft.rfft(bend * x) - 2j * omega * first - omega**2 * plain
-        found = np.fft.rfft(window * (measured - measured.mean()))
     # Noise of a differentiated displacement grows with frequency: judge where x itself is strong.
     power = np.abs(plain) ** 2
     strong = power > 0.01 * power[1:].max()
     strong[0] = False
-    computed, found = computed[strong], found[strong]
+    offset = np.fft.rfft(window)[strong]  # a sensor's constant offset is no disagreement
+    offset = offset / np.linalg.norm(offset)
+    computed, found = (c[strong] - offset * np.vdot(offset, c[strong]) for c in (computed, found))
     ratio = complex(np.vdot(computed, found) / np.vdot(computed, computed).real)
     total = float(np.linalg.norm(found))
     rest = float(np.linalg.norm(found - ratio * computed)) / total if total else 1.0

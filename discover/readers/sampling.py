@@ -131,7 +131,9 @@ def _rounding(raw_time: Array) -> float:
     largest = float(np.abs(raw_time).max())
     step = (float(raw_time[-1]) - float(raw_time[0])) / (raw_time.size - 1)
     single = 0.0
-    if np.array_equal(raw_time.astype(np.float32).astype(np.float64), raw_time):
+    with np.errstate(over="ignore", under="ignore"):
+        in_single = raw_time.astype(np.float32).astype(np.float64)
+    if np.array_equal(in_single, raw_time):
         single = 1.2e-7 * largest
     for digits in range(13):
         scaled = raw_time * 10.0**digits

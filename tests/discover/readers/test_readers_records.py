@@ -1,0 +1,248 @@
+"""Sampling, labels, clipping and measured derivatives of a record, against known truth."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from discover.readers import read_campaign
+from discover.readers.consistency import derivative_agreement
+from discover.readers.record import clipping_text
+from discover.readers.sampling import regular
+from discover.readers.source import row_place
+from discover.records import Campaign
+from models.checks import InputError
+from tests.discover.readers.folder import (
+    DISPLACEMENT,
+    FORCE,
+    HEADER,
+    ONE,
+    TIME,
+    VELOCITY,
+    campaign,
+    rows,
+)
+
+
+def _read(
+    folder: Path,
+    time: np.ndarray = TIME,
+    displacement: np.ndarray = DISPLACEMENT,
+    force: np.ndarray = FORCE,
+    *,
+    labels: str = "",
+) -> Campaign:
+    content = HEADER + "\n" + rows(time, displacement, force)
+    return read_campaign(campaign(folder / "c", content, toml=ONE + labels))
+
+
+@pytest.mark.parametrize("decimals", [4, 6, 9])
+def test_rounded_time_is_put_back_on_its_grid_silently(tmp_path: Path, decimals: int) -> None:
+    exact = 3.7 + np.arange(2000) / 300.0
+    found = _read(tmp_path, np.round(exact, decimals))
+    assert found.findings == ()
+    np.testing.assert_allclose(found.records[0].time, exact, atol=10.0**-decimals)
+    assert found.records[0].step == pytest.approx(1.0 / 300.0, rel=1e-6)
+
+
+def test_time_rounded_to_repeats_is_put_back_if_the_digit_is_fine_enough(tmp_path: Path) -> None:
+    found = _read(tmp_path, np.round(np.arange(2000) / 1500.0, 3))
+    assert found.records[0].step == pytest.approx(1.0 / 1500.0, rel=1e-5)
+    with pytest.raises(InputError, match="time must be strictly increasing"):
+        _read(tmp_path, np.round(np.arange(2000) / 4000.0, 3))
+
+
+def test_jitter_is_resampled_to_the_true_signal_and_said(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    time = TIME + 2e-4 * rng.uniform(-1.0, 1.0, TIME.size)
+    turn = 2 * np.pi * 1.5
+    found = _read(tmp_path, time, 10.0 * np.sin(turn * time), np.sin(turn * time + 0.3))
+    (record,) = found.records
+    assert np.ptp(np.diff(record.time)) < 1e-12
+    np.testing.assert_allclose(record.displacement, 0.01 * np.sin(turn * record.time), atol=2e-8)
+    inner = slice(5, -5)
+    exact = 1e3 * np.sin(turn * record.time + 0.3)
+    np.testing.assert_allclose(record.force[inner], exact[inner], atol=2e-3)
+    (finding,) = found.findings
+    assert finding.level == "note"
+    assert "resampled onto a uniform grid by a cubic spline" in finding.text
+
+
+def test_resampling_error_falls_with_the_fourth_power_of_the_step() -> None:
+    errors = []
+    for count in (200, 400, 800):
+        rng = np.random.default_rng(1)
+        step = 2.0 / count
+        time = np.arange(count) * step
+        time[1:-1] += 0.2 * step * rng.uniform(-1.0, 1.0, count - 2)
+        found = regular(
+            time,
+            {"x": np.sin(9.0 * time)},
+            raw_time=time,
+            resample=True,
+            where="x",
+            place=row_place,
+        )
+        error = found.columns["x"] - np.sin(9.0 * found.time)
+        errors.append(float(np.sqrt(np.mean(error[10:-10] ** 2))))
+    assert errors[1] < errors[0] / 10.0
+    assert errors[2] < errors[1] / 10.0
+
+
+def test_strong_jitter_is_a_warning(tmp_path: Path) -> None:
+    rng = np.random.default_rng(2)
+    steps = 0.005 * rng.uniform(0.6, 1.4, TIME.size)
+    found = _read(tmp_path, np.cumsum(steps))
+    assert found.findings[0].level == "warning"
+    assert "costs accuracy" in found.findings[0].text
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda t: np.delete(t, slice(100, 110)),
+         r"a.csv line 102: time must be without gaps, sampled every 0.005 s, got 0.055 s from"),
+        (lambda t: np.delete(t, 100), "line 102: time must be without gaps"),
+        (lambda t: np.insert(t, 50, t[50]),
+         "line 53: time must be strictly increasing, .* repeats"),
+        (lambda t: np.r_[t[:50], t[:40]],
+         "line 52: time must be strictly increasing, .* it falls"),
+        (lambda t: t[::-1], "time must be strictly increasing"),
+        (lambda t: t[:10], "samples must be at least 16, got 10"),
+        (lambda t: 0.0 * t, "time must be strictly increasing"),
+    ],
+)  # fmt: skip
+def test_time_that_cant_be_mended(tmp_path: Path, change: object, message: str) -> None:
+    time = change(TIME)
+    size = time.size
+    x, force = np.resize(DISPLACEMENT, size), np.resize(FORCE, size)
+    with pytest.raises(InputError, match=message):
+        _read(tmp_path, time, x, force)
+
+
+def test_standing_channels_are_errors(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="a.csv: displacement must be varying, got 0 throughout"):
+        _read(tmp_path, displacement=0.0 * TIME)
+    with pytest.raises(InputError, match="a.csv: force must be varying, got 2000 throughout"):
+        _read(tmp_path, force=2.0 + 0.0 * TIME)
+
+
+def test_wrong_frequency_label_says_both(tmp_path: Path) -> None:
+    turn = 2 * np.pi * 8.0
+    with pytest.raises(
+        InputError, match=r"a.csv: frequency .* 8 Hz, within 5 %, got the label 5 H"
+    ):
+        _read(tmp_path, TIME, 5 * np.sin(turn * TIME), labels='frequency = "5 Hz"\n')
+
+
+@pytest.mark.parametrize("label", [1.43, 1.57])
+def test_rounded_frequency_label_passes(tmp_path: Path, label: float) -> None:
+    assert _read(tmp_path, labels=f'frequency = "{label} Hz"\n').findings == ()
+
+
+def test_amplitude_labels(tmp_path: Path) -> None:
+    assert _read(tmp_path, labels='amplitude = "10.3 mm"\n').findings == ()
+    (noted,) = _read(tmp_path, labels='amplitude = "9 mm"\n').findings
+    assert "amplitude is 10 mm where the label says 9 mm: the measured one is used" in noted.text
+    with pytest.raises(InputError, match="10 mm, within 20 %, got the label 14 mm$"):
+        _read(tmp_path, labels='amplitude = "14 mm"\n')
+    with pytest.raises(InputError, match=r"got the label 20 mm \(it looks like peak to peak\)"):
+        _read(tmp_path, labels='amplitude = "20 mm"\n')
+
+
+def test_label_on_a_record_that_is_no_sine_is_told(tmp_path: Path) -> None:
+    sweep = 10.0 * np.sin(2 * np.pi * (0.5 + 0.2 * TIME) * TIME)
+    (finding,) = _read(tmp_path, displacement=sweep, labels='frequency = "1 Hz"\n').findings
+    assert "is no steady sine of 1.5 cycles or more: treated as a trajectory" in finding.text
+
+
+def test_force_curve_without_displacement(tmp_path: Path) -> None:
+    time = np.sort(np.random.default_rng(3).uniform(0.0, 2.0, 60))
+    content = "time [s],force [kN]\n" + rows(time, np.sin(3.0 * time))
+    labels = 'frequency = "0.5 Hz"\namplitude = "20 mm"\n'
+    found = read_campaign(campaign(tmp_path / "c", content, toml=ONE + labels))
+    (record,) = found.records
+    assert (record.displacement, record.uniform) == (None, False)
+    np.testing.assert_allclose(record.time, time, rtol=1e-8)
+    assert "the motion is made from its labels, 0.5 Hz and 20 mm" in found.findings[0].text
+    for labels in ("", 'frequency = "0.5 Hz"\n'):
+        with pytest.raises(InputError, match="'displacement' .* or the record's frequency and amp"):
+            read_campaign(campaign(tmp_path / "c", content, toml=ONE + labels))
+    labels = 'frequency = "0.1 Hz"\namplitude = "20 mm"\n'
+    with pytest.raises(InputError, match="time must be over at least half a cycle"):
+        read_campaign(campaign(tmp_path / "c", content, toml=ONE + labels))
+
+
+def test_clipped_force_is_found_and_smooth_quantised_or_noisy_force_is_not(tmp_path: Path) -> None:
+    found = _read(tmp_path, force=np.clip(FORCE, -0.8, 0.9))
+    assert "largest value 900 N" in found.findings[0].text
+    assert "smallest value -800 N" in found.findings[0].text
+    rng = np.random.default_rng(4)
+    for quantum in (1e-4, 0.01, 0.1, 0.3):
+        assert clipping_text(quantum * np.round(FORCE / quantum)) == ""
+    assert clipping_text(FORCE + 0.01 * rng.standard_normal(TIME.size)) == ""
+
+
+@pytest.mark.parametrize("cycles", [2.3, 15.0])
+def test_integration_by_parts_needs_no_whole_cycles(cycles: float) -> None:
+    step = cycles / 1.5 / 1999
+    turn = 2 * np.pi * 1.5
+    t = np.arange(2000) * step
+    x = np.sin(turn * t) + 0.3 * np.cos(3 * turn * t) + 5.0
+    v = turn * (np.cos(turn * t) - 0.9 * np.sin(3 * turn * t))
+    a = -(turn**2) * (np.sin(turn * t) + 2.7 * np.cos(3 * turn * t))
+    for order, signal in ((1, v), (2, a)):
+        found = derivative_agreement(x, signal, step, order=order)
+        assert found.gain == pytest.approx(1.0, abs=1e-6)
+        assert found.phase == pytest.approx(0.0, abs=1e-6)
+        assert found.residual < 1e-5
+    delayed = turn * np.cos(turn * (t - 0.01))
+    assert derivative_agreement(np.sin(turn * t), delayed, step, order=1).phase == pytest.approx(
+        -0.01 * turn, abs=0.01
+    )
+
+
+def test_noisy_but_true_derivatives_are_kept() -> None:
+    rng = np.random.default_rng(5)
+    turn = 2 * np.pi * 1.5
+    x = np.sin(turn * TIME) + 1e-3 * rng.standard_normal(TIME.size)
+    a = -(turn**2) * np.sin(turn * TIME)
+    noisy = a + 0.2 * np.std(a) * rng.standard_normal(TIME.size)
+    assert derivative_agreement(x, noisy, 0.005, order=2).accepted
+
+
+@pytest.mark.parametrize(
+    ("factor", "reason"),
+    [
+        (1.0, None),
+        (-1.0, "its sign is opposite"),
+        (1e3, "it is off by a factor of 1000: its unit?"),
+        (1e-3, "it is off by a factor of 0.001: its unit?"),
+        (1.2, r"it is \+20.0 % off"),
+    ],
+)
+def test_measured_velocity_is_kept_or_rejected_with_a_reason(
+    tmp_path: Path, factor: float, reason: str | None
+) -> None:
+    content = HEADER + ",velocity [mm/s]\n" + rows(TIME, DISPLACEMENT, FORCE, factor * VELOCITY)
+    found = read_campaign(campaign(tmp_path / "c", content))
+    (record,) = found.records
+    if reason is None:
+        np.testing.assert_allclose(record.velocity, 1e-3 * VELOCITY, rtol=1e-7, atol=1e-9)
+        assert found.findings == ()
+    else:
+        assert record.velocity is None
+        text = found.findings[0].text
+        assert "the measured velocity disagrees with the displacement" in text
+        assert re.search(reason, text)
+
+
+def test_unrelated_acceleration_is_rejected(tmp_path: Path) -> None:
+    noise = np.random.default_rng(6).standard_normal(TIME.size)
+    content = HEADER + ",acceleration [g_0]\n" + rows(TIME, DISPLACEMENT, FORCE, noise)
+    found = read_campaign(campaign(tmp_path / "c", content))
+    assert found.records[0].acceleration is None
+    assert "the measured acceleration disagrees" in found.findings[0].text
