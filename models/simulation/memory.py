@@ -69,7 +69,7 @@ def impulse_memory(
     recent = np.array([near0, far0 + near1 - near0, far1 - far0])
 
     beta = order - 1.0 if order > 1.0 else order
-    # Towards a whole order the kernel itself vanishes like 1 - beta, and rounding is relative to it.
+    # Towards a whole order the kernel vanishes like 1 - beta, and rounding is relative to it.
     reachable = max(error, min(2e-16 / (1.0 - beta), 0.1))
     weights, rates = exponential_sum(beta, step, max(horizon, 2.0 * step) + step, reachable)
     z = rates * step
