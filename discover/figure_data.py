@@ -89,3 +89,85 @@ class StudyFigureData:
     """Dean number per m/s of piston speed, the paper's convention; None without a device."""
     dean_per_speed_standard: float | None = None
     """The same by the standard convention."""
+
+
+@dataclass(frozen=True)
+class GapCurves:
+    """One record of a gap search: measured, and the model before and after it was mended."""
+
+    file: str
+    """Name as in the campaign."""
+    held_out: bool
+    """Never fitted, only predicted."""
+    frequency: float | None
+    """Hz; None for a record that is no sine test."""
+    amplitude: float | None
+    """m, displacement amplitude; None for a record that is no sine test."""
+    time: Array
+    """(n,) s, one or two cycles of a sine test, else the whole record; at most about 600 points."""
+    displacement: Array
+    """(n,) m."""
+    velocity: Array
+    """(n,) m/s."""
+    force: Array
+    """(n,) N, measured."""
+    before: Array
+    """(n,) N, the baseline's force."""
+    after: Array
+    """(n,) N, the mended model's force."""
+    noise_percent: float | None
+    """100 ||noise||/||F||."""
+    gap_before_percent: float
+    """100 ||F - baseline||/||F||."""
+    gap_after_percent: float
+    """100 ||F - mended model||/||F||."""
+
+
+@dataclass(frozen=True)
+class EffectShape:
+    """The force that one named effect adds, over what it follows, with its band."""
+
+    round: int
+    """Index into the document's rounds."""
+    effect: str
+    """Its id."""
+    abscissa: str
+    """What it follows: "velocity", "displacement", "acceleration" or "time"."""
+    unit: str
+    """SI unit of the abscissa."""
+    x: Array
+    """(m,) abscissa, SI."""
+    force: Array
+    """(m,) N, by the fitted effect."""
+    lower: Array
+    """(m,) N, lower end of its 95 % band."""
+    upper: Array
+    """(m,) N, upper end."""
+    measured_x: Array
+    """(k,) abscissa of the misfit that the effect was named from; empty where not shown."""
+    measured: Array
+    """(k,) N, that misfit: measured force less the rest of the model; empty where not shown."""
+
+
+@dataclass(frozen=True)
+class MisfitCell:
+    """One cell of the misfit over displacement and velocity, over all records."""
+
+    displacement: float
+    """Middle of the cell over the record's displacement amplitude, in [-1, 1]."""
+    velocity: float
+    """Middle of the cell over the record's velocity amplitude, in [-1, 1]."""
+    share: float
+    """Mean misfit in the cell, signed, over the records' rms misfit."""
+
+
+@dataclass(frozen=True)
+class GapFigureData:
+    """Everything that a gap search's pictures need and its document does not carry."""
+
+    records: tuple[GapCurves, ...]
+    """In the campaign's order, held-out ones included."""
+    shapes: tuple[EffectShape, ...] = ()
+    """One for each effect that has a shape to show."""
+    surface: tuple[MisfitCell, ...] = ()
+    """The baseline's misfit over the cycle; empty where not drawn."""

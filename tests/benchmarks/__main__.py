@@ -1,7 +1,7 @@
 """``python -m tests.benchmarks``: every benchmark in one run, as a table that is kept.
 
-Each ``bench_*.py`` beside this file has ``rows()``: (what, value, unit, beside what). The table goes
-to ``results.md`` with the machine, the date and the commit that it was measured on.
+Each ``bench_*.py`` beside this file has ``rows()``: (what, value, unit, beside what). The table
+goes to ``results.md`` with the machine, the date and the commit that it was measured on.
 """
 
 from __future__ import annotations
