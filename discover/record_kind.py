@@ -194,7 +194,7 @@ def _local_phasors(time: Array, x: Array, fit: SineFit) -> tuple[NDArray[np.int_
 def _steady_part(time: Array, x: Array, fit: SineFit) -> slice | None:
     """Return the longest stretch of constant amplitude and phase, or None where it is short.
 
-    It must hold at least half of what moves: a stepped or swept sine is not a sine test.
+    It must hold at least three fifths of what moves: a stepped or swept sine is not a sine test.
     """
     if fit.cycles < 3.0:  # too few cycles to tell start-up from steady state
         return slice(0, x.size)
@@ -216,7 +216,7 @@ def _steady_part(time: Array, x: Array, fit: SineFit) -> slice | None:
         return None
     begins, ends = edges[::2], edges[1::2]
     best = int(np.argmax(ends - begins))
-    if ends[best] - begins[best] < 0.5 * np.count_nonzero(moving):
+    if ends[best] - begins[best] < 0.6 * np.count_nonzero(moving):
         return None
     period = round(1.0 / (fit.frequency * float(time[1] - time[0])))
     length = max(length, period)
