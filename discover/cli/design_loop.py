@@ -17,7 +17,7 @@ from discover.records import Campaign, Record
 from discover.study import StudyOptions, run_study
 from models.design import DesignResult
 from models.device import Device
-from models.rig import Chain, run, sine_plan
+from models.rig import Chain, RigPhysics, run, sine_plan
 
 _SHARES = (0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.0)  # of the highest working frequency
 _AMPLITUDES = (1.0, 2.0)  # times the duty's
@@ -30,6 +30,7 @@ def rig_campaign(
     frequencies: Sequence[float],
     amplitudes: Sequence[float],
     noise: float = _NOISE,
+    seal: bool = True,
     seed: int = 0,
 ) -> Campaign:
     """Return sine tests of a device on the virtual rig as a campaign.
@@ -42,11 +43,14 @@ def rig_campaign(
         Hz and m; points beyond the rig's limits are left out.
     noise : float
         rms noise of the force over its rms.
+    seal : bool
+        Whether the seals rub: without them the flow is all there is.
     seed : int
         Makes it repeatable.
     """
     plan = sine_plan(device, frequencies=frequencies, amplitudes=amplitudes)
-    measured = run(device, plan, seed=seed, chain=Chain(noise=noise))
+    physics = RigPhysics(seal="dynamic" if seal else "none")
+    measured = run(device, plan, seed=seed, chain=Chain(noise=noise), physics=physics)
     records = tuple(
         Record(
             r.file, r.time, r.force, r.displacement, frequency=r.frequency, amplitude=r.amplitude
@@ -120,27 +124,34 @@ def close_loop(result: DesignResult, *, seed: int = 0, jobs: int = 1) -> dict[st
     -------
     dict or None
         What `judge` returns, the best single fractional model of the designed device and of the
-        baseline in the same tests, and ``text``; None where nothing was designed.
+        baseline in the same tests, with the seals' friction and without (the flow alone), and
+        ``text``; None where nothing was designed.
     """
     if result.best is None:
         return None
     friction = result.baseline.device.coulomb_friction
     frequencies = [share * result.duty.frequency for share in _SHARES]
     amplitudes = [factor * result.duty.amplitude for factor in _AMPLITUDES]
-    designed, baseline = (
-        rig_campaign(
-            replace(device, coulomb_friction=0.0 if friction is None else friction),
+
+    def tested(device: Device, *, seal: bool) -> Campaign:
+        dry = friction if seal and friction is not None else 0.0
+        return rig_campaign(
+            replace(device, coulomb_friction=dry),
             frequencies=frequencies,
             amplitudes=amplitudes,
+            seal=seal,
             seed=seed,
         )
-        for device in (result.best.device, result.baseline.device)
-    )
+
+    best, own = result.best.device, result.baseline.device
+    designed = tested(best, seal=True)
     loop = {
         **judge(designed, seed=seed, jobs=jobs),
         "noise_percent": 100.0 * _NOISE,
         "one_foim": one_foim(designed),
-        "one_foim_baseline": one_foim(baseline),
+        "one_foim_baseline": one_foim(tested(own, seal=True)),
+        "one_foim_without_seal": one_foim(tested(best, seal=False)),
+        "one_foim_baseline_without_seal": one_foim(tested(own, seal=False)),
         "frequencies_hz": frequencies,
         "amplitudes_m": amplitudes,
     }

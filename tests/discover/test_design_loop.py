@@ -42,6 +42,8 @@ def test_designed_device_runs_on_the_rig_and_the_report_says_whether_one_model_s
     else:
         assert loop["one_foim"]["error_percent"] > 3.0 * loop["noise_percent"]
         assert "does not serve" in loop["text"]
+    # The seals are not to blame alone: the flow by itself is judged beside.
+    assert loop["one_foim_without_seal"]["error_percent"] > 0.0
     # The rig's device has the designed inertance in it: its order lies between 1 and 2.
     assert 1.0 < loop["one_foim"]["order"] < 2.0
 
@@ -66,3 +68,9 @@ def test_rig_campaign_keeps_within_the_limits_and_repeats():
     assert [r.frequency for r in once.records] == [1.0]
     assert np.array_equal(once.records[0].force, twice.records[0].force)
     assert once.device == TWELVE
+
+
+def test_without_seals_a_slow_record_is_nearly_free_of_force():
+    ask = {"frequencies": [0.1], "amplitudes": [0.005]}
+    rubbing, free = (rig_campaign(TWELVE, seal=seal, **ask).records[0] for seal in (True, False))
+    assert np.std(free.force) < 0.1 * np.std(rubbing.force)
