@@ -125,14 +125,23 @@ def _blocks(window: Window, *, sine: bool) -> Indices:
 
 
 def window_rows(
-    window: Window, columns: Array, dictionary: Dictionary, record: int, *, sine: bool
+    window: Window,
+    columns: Array,
+    dictionary: Dictionary,
+    record: int,
+    *,
+    sine: bool,
+    delay: float = 0.0,
 ) -> WindowRows:
-    """Return the rows of one window for columns (K, N) on its motion's grid."""
-    lines = window.project(columns)
-    stacked = [lines]
+    """Return the rows of one window for columns (K, N) on its motion's grid.
+
+    The force's lines are advanced by `delay`, s.
+    """
+    force = window.force * np.exp(1j * window.omega * delay)
+    stacked = [window.project(columns)]
     if dictionary.delay:
-        stacked.append((-1j * window.omega * window.force)[None])
-    stacked.append(window.force[None])
+        stacked.append((-1j * window.omega * force)[None])
+    stacked.append(force[None])
     rows = real_rows(np.concatenate(stacked)).T
     block = _blocks(window, sine=sine)
     of_row = np.concatenate((block, block))
@@ -163,10 +172,20 @@ def window_rows(
     )
 
 
-def rows_of(observation: Observation, dictionary: Dictionary, record: int) -> list[WindowRows]:
-    """Return the rows of every window of an observation; its columns are evaluated once."""
-    columns = dictionary.evaluate(observation.motion)
+def rows_of(
+    observation: Observation, dictionary: Dictionary, record: int, *, delay: float = 0.0
+) -> list[WindowRows]:
+    """Return the rows of every window of an observation; its columns are evaluated once.
+
+    A delay (s) of the force channel is taken out: the motion is taken that much earlier, or where
+    it can't be, the force's lines are advanced.
+    """
+    motion = observation.motion
+    if delay and observation.late is not None:
+        motion, delay = observation.late(delay), 0.0
+    columns = dictionary.evaluate(motion)
     sine = observation.kind == "sine"
     return [
-        window_rows(w, columns, dictionary, record, sine=sine) for w in observation.windows
+        window_rows(w, columns, dictionary, record, sine=sine, delay=delay)
+        for w in observation.windows
     ]

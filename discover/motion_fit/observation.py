@@ -90,6 +90,9 @@ class Observation:
     """N/s: straight trend of the force that the lines exclude."""
     cycle: Motion | None = None
     """One cycle of a sine test on a dense grid, for steady-state simulation; None otherwise."""
+    late: Callable[[float], Motion] | None = None
+    """The motion some seconds earlier, which a late force channel belongs to; None where only
+    the force's lines can be shifted."""
     usable: slice = field(default_factory=lambda: slice(None))
     """Samples of the record that are used."""
 

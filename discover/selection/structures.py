@@ -59,7 +59,7 @@ def structure_of(ids: Sequence[str], exponent: float = TURBULENT_EXPONENT) -> st
     if core <= {"inertia", "viscous-damping", "quadratic-damping"}:
         return "IOIM-laminar"
     turbulent = TURBULENT_RANGE[0] <= exponent <= TURBULENT_RANGE[1]
-    if POWER in core and turbulent and core <= {"inertia", "viscous-damping", "quadratic-damping", POWER}:
+    if POWER in core and turbulent and core - {POWER} <= set(_CORES[3]):
         return "IOIM-turbulent"
     return "other"
 

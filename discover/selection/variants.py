@@ -17,8 +17,20 @@ _SIGNIFICANT = 6.0  # rise of the log likelihood ratio from which a shape is wor
 _NODES = {"fractional-derivative": 5, "power-law-damping": 3}
 
 
-def _rich(dictionary: Dictionary, chosen: dict[str, int]) -> Array:
-    """Return (K, k) of a rich model: one variant of every term, some orders and exponents."""
+def rich_weights(dictionary: Dictionary, chosen: dict[str, int] | None = None) -> Array:
+    """Return (K, k) of a rich model: one variant of every term, some orders and exponents.
+
+    Parameters
+    ----------
+    dictionary : Dictionary
+        Of the columns.
+    chosen : dict, optional
+        Position of the variant of each term; the first of each where absent.
+    """
+    if chosen is None:
+        chosen = {}
+        for index, column in enumerate(dictionary.columns):
+            chosen.setdefault(column.id, index)
     identity = np.eye(dictionary.size)
     vectors = [identity[i] for i in chosen.values()]
     for identifier, nodes in _NODES.items():
@@ -52,7 +64,7 @@ def settle_variants(
             continue
         misfits = []
         for index in indices:
-            weights = _rich(dictionary, {**chosen, identifier: index})
+            weights = rich_weights(dictionary, {**chosen, identifier: index})
             misfits.append(solve(triangle.columns @ weights, triangle.target)[1])
         best = int(np.argmin(misfits))
         ratio = informative * np.log(max(misfits[0], 1e-300) / max(misfits[best], 1e-300))

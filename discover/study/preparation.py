@@ -10,7 +10,8 @@ from joblib import Parallel, delayed
 from discover.library.dictionary import DELAY, PLAIN, Dictionary, standard_dictionary
 from discover.motion_fit import Observation, observe
 from discover.records import Campaign, Finding, Record
-from discover.regression.support import Support
+from discover.regression.support import MOST_DELAY, Support
+from discover.selection.delay import further_delay, rich_delay
 from discover.selection.structures import FRACTIONAL, POWER, candidate_supports
 from discover.selection.variants import settle_variants
 from discover.study.options import StudyOptions
@@ -18,6 +19,8 @@ from discover.triangle import WindowRows, rows_of
 from models.checks import InputError
 from models.terms import find_term
 
+_DELAY_ROUNDS = 5
+_NO_DELAY = 2e-6  # s
 _ORDERS = (0.0, 2.0)
 _EXPONENTS = (0.4, 3.0)
 
@@ -36,6 +39,8 @@ class Prepared:
     """Of their columns."""
     supports: tuple[Support, ...]
     """What the search weighs."""
+    delay: float
+    """s: what the force channel was found to run late, taken out of the windows."""
     findings: tuple[Finding, ...]
     """What observing found."""
 
@@ -80,8 +85,15 @@ def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
         exponents=_range(options.exponents, _EXPONENTS),
         delay=delay,
     )
-    rows = [rows_of(o, dictionary, i) for i, o in enumerate(observations)]
-    fitted = [w for o, r in zip(observations, rows, strict=True) if not o.held_out for w in r]
+    delay_found = 0.0
+    for _ in range(_DELAY_ROUNDS):
+        rows = [rows_of(o, dictionary, i, delay=delay_found) for i, o in enumerate(observations)]
+        fitted = [w for o, r in zip(observations, rows, strict=True) if not o.held_out for w in r]
+        find = further_delay if delay_found else rich_delay
+        step = find(fitted, dictionary)
+        if abs(step) < _NO_DELAY or abs(delay_found + step) > MOST_DELAY:
+            break
+        delay_found += step
     settled, small = settle_variants(fitted, dictionary)
     kept = [dictionary.columns.index(c) for c in small.columns]
     positions = [*kept, *range(len(dictionary.columns), dictionary.size + 1)]
@@ -98,7 +110,13 @@ def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
         plain = tuple(t for t in options.terms if t not in free)
         supports = (Support(plain, free),)
     return Prepared(
-        observations, tuple(settled), tuple(held), small, supports, _findings(observations)
+        observations,
+        tuple(settled),
+        tuple(held),
+        small,
+        supports,
+        delay_found,
+        _findings(observations),
     )
 
 

@@ -56,7 +56,7 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
     model = _model(bands, prepared.dictionary, device, chosen.convention)
     place = _places(prepared, bands, device, chosen.convention)
     accuracies = [
-        predict(o, model.bands[b].model, _delay(bands.judgements[b]))
+        predict(o, model.bands[b].model, prepared.delay + _delay(bands.judgements[b]))
         for o, b in zip(prepared.observations, place, strict=True)
     ]
     fitted = [a for a in accuracies if not a.observation.held_out]
@@ -69,7 +69,7 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
         for b in bands.segmentation.boundaries
     )
     check = _dean(bands, boundaries, device, chosen)
-    nuisance = tuple(n for j in bands.judgements for n in _nuisance(j, prepared.dictionary))
+    nuisance = _nuisance(bands.judgements, prepared.delay)
     findings = study_findings(campaign, prepared, bands, study_bands, nuisance)
     return Study(
         title=campaign.title,
@@ -145,20 +145,36 @@ def _terms(judgement: Judgement, dictionary: Dictionary) -> tuple[TermEstimate, 
     return tuple(result)
 
 
-def _nuisance(judgement: Judgement, dictionary: Dictionary) -> tuple[Nuisance, ...]:
+def _nuisance(judgements: Sequence[Judgement], delay: float) -> tuple[Nuisance, ...]:
+    """Return the sensor's artefacts: one delay for all, since the channels are the same."""
+    result = []
+    if delay or any(DELAY in j.support.ids for j in judgements):
+        steps, weights = zip(*(_delay_step(j) for j in judgements), strict=True)
+        weight = sum(weights)
+        value = delay + sum(s * w for s, w in zip(steps, weights, strict=True)) / weight
+        half = 2.0 / float(np.sqrt(weight))
+        result.append(Nuisance(DELAY, value, (value - half, value + half), "s"))
+    for judgement in judgements:
+        if "force-offset" in judgement.support.ids:
+            i = judgement.support.ids.index("force-offset")
+            low, high = judgement.uncertainty.intervals[i]
+            value = float(judgement.fit.coefficients[i])
+            result.append(Nuisance("force-offset", value, (float(low), float(high)), "N"))
+    return tuple(result)
+
+
+def _delay_step(judgement: Judgement) -> tuple[float, float]:
+    """Return the delay (s) left beside a band's other terms, and its inverse variance."""
+    triangle = judgement.engine.triangle
     ids = judgement.support.ids
-    spread = judgement.uncertainty
-    units = {DELAY: "s", "force-offset": "N"}
-    return tuple(
-        Nuisance(
-            identifier,
-            float(judgement.fit.coefficients[i]),
-            (float(spread.intervals[i, 0]), float(spread.intervals[i, 1])),
-            units[identifier],
-        )
-        for i, identifier in enumerate(ids)
-        if identifier in units
-    )
+    others = judgement.fit.weights[:, [i for i, name in enumerate(ids) if name != DELAY]]
+    columns = triangle.columns @ others
+    norms = np.linalg.norm(columns, axis=0)
+    q, _ = np.linalg.qr(columns / np.where(norms > 0.0, norms, 1.0))
+    both = np.column_stack([triangle.columns[:, -1], triangle.target])
+    column, target = (both - q @ (q.T @ both)).T
+    power = max(float(column @ column), 1e-300)
+    return float(column @ target) / power, power
 
 
 def _band(

@@ -1,0 +1,134 @@
+"""A study recovers stated models from their exact records, and says what it can't tell."""
+
+import numpy as np
+import pytest
+
+from discover.study import StudyOptions, run_study
+from tests.discover.exact import DEVICE_10, DEVICE_12, campaign, fractional, integer, segmented
+
+M1 = (370.38 * 19.25, 0.48, 400.0)
+M2 = (370.38 * 1.57, 1.89, 400.0)
+
+
+def terms(band):
+    return {t.fitted.id: t for t in band.terms}
+
+
+def test_segmented_fractional_model_gives_both_orders_and_the_dean_boundary():
+    study = run_study(campaign(segmented(DEVICE_12, M1, M2)))
+    assert [b.structure for b in study.bands] == ["FOIM", "FOIM"]
+    low, high = (terms(b)["fractional-derivative"] for b in study.bands)
+    assert low.fitted.shape["order"] == pytest.approx(0.48, abs=0.02)
+    assert high.fitted.shape["order"] == pytest.approx(1.89, abs=0.01)
+    (boundary,) = study.boundaries
+    assert boundary.bracket[0] < 100.0 < boundary.bracket[1]
+    assert study.dean_check.verdict == "consistent"
+    assert study.dean_check.amplitude_exponent_interval[0] < -1.0
+    assert study.dean_check.amplitude_exponent_interval[1] < 0.0
+
+
+def test_laminar_records_give_the_integer_family_without_a_boundary():
+    c1, c2 = DEVICE_12.laminar_coefficients
+    force = integer(370.38, c2, c1, 0.0, 400.0)
+    study = run_study(campaign(force, held_out=(5, 17)))
+    (band,) = study.bands
+    assert band.family == "integer"
+    assert band.structure == "IOIM-laminar"
+    assert not study.boundaries
+    assert study.dean_check.verdict == "no-boundary"
+    assert terms(band)["inertia"].fitted.coefficient == pytest.approx(370.38, rel=0.01)
+    inside = terms(band)["inertia"].interval
+    assert inside[0] < 370.38 < inside[1]
+    assert study.held_out_relative_error_percent == pytest.approx(2.0, abs=0.1)
+
+
+def test_turbulent_records_name_the_forms_that_noise_leaves_open():
+    c1, c2, c3 = DEVICE_10.turbulent_coefficients
+    study = run_study(campaign(integer(73.82, c3, c2, c1, 550.0), DEVICE_10))
+    (band,) = study.bands
+    assert band.family == "integer"
+    assert not study.boundaries
+    assert terms(band)["inertia"].fitted.coefficient == pytest.approx(73.82, rel=0.01)
+    assert any("can't be told from" in f.text for f in study.findings)
+
+
+def test_prediction_of_held_out_records_is_close_to_the_noise_free_force():
+    c1, c2 = DEVICE_12.laminar_coefficients
+    noisy = run_study(campaign(integer(370.38, c2, c1, 0.0, 400.0), seed=3))
+    clean = campaign(integer(370.38, c2, c1, 0.0, 400.0), noise=0.0, frequencies=(0.7, 3.0, 8.0))
+    from discover.motion_fit import observe
+    from discover.study.accuracy import pooled_percent, predict
+
+    predicted = [predict(observe(r), noisy.model.bands[0].model) for r in clean.records]
+    assert pooled_percent(predicted) < 0.5
+
+
+def test_a_single_frequency_is_said_to_leave_the_order_open():
+    study = run_study(campaign(fractional(*M2), frequencies=(3.0,), amplitudes=(0.005, 0.01)))
+    assert not study.identifiable
+    structures = {s for s, _ in study.bands[0].equivalents}
+    assert {"FOIM", "IOIM-linear"} <= structures
+    assert any("single frequency" in f.text for f in study.findings)
+
+
+def test_one_record_gives_one_band_and_says_why():
+    study = run_study(campaign(fractional(*M2), frequencies=(3.0,), amplitudes=(0.01,)))
+    assert len(study.bands) == 1
+    assert any("one record can't show a boundary" in f.text for f in study.findings)
+
+
+def test_a_delay_of_the_force_channel_is_found_and_corrected():
+    c1, c2 = DEVICE_12.laminar_coefficients
+    law = integer(370.38, c2, c1, 0.0, 400.0)
+
+    def late(amplitude, omega, theta):
+        return law(amplitude, omega, theta - omega * 1e-3)
+
+    study = run_study(campaign(late))
+    delays = [n for n in study.nuisance if n.id == "time-delay"]
+    assert delays
+    assert delays[0].value == pytest.approx(1e-3, rel=0.05)
+    inertia = terms(study.bands[0])["inertia"].fitted.coefficient
+    assert inertia == pytest.approx(370.38, rel=0.01)
+
+
+def test_terms_that_are_asked_for_are_all_kept():
+    options = StudyOptions(terms=("inertia", "viscous-damping", "coulomb-friction", "stiffness"))
+    study = run_study(campaign(integer(370.38, 4000.0, 0.0, 0.0, 400.0)), options)
+    assert set(terms(study.bands[0])) == set(options.terms)
+
+
+def test_the_number_of_bands_can_be_fixed():
+    study = run_study(campaign(fractional(*M2)), StudyOptions(bands=2))
+    assert len(study.bands) == 2
+
+
+def test_documents_hold_the_contract_keys():
+    study = run_study(campaign(fractional(*M2), frequencies=(1.0, 3.0, 9.0)))
+    document = study.to_dict()
+    assert document["schema"] == "inerter.study/1"
+    for key in ("coordinate", "relative_error_percent", "identifiable", "findings", "bands",
+                "nuisance", "boundaries", "dean_check", "next_test", "version", "seed"):
+        assert key in document
+    for key in ("lower", "upper", "lower_hz", "upper_hz", "records", "family", "structure",
+                "terms", "error_percent", "relative_error_percent", "noise_percent",
+                "probability", "equivalents"):
+        assert key in document["bands"][0]
+    model = study.model_dict()
+    assert model["schema"] == "inerter.model/1"
+    assert model["bands"][0]["terms"][0]["id"] == "fractional-derivative"
+
+
+def test_units_do_not_change_the_answer():
+    base = campaign(fractional(*M2), frequencies=(0.5, 1.0, 3.0, 9.0))
+    from dataclasses import replace
+
+    scaled = replace(
+        base, records=tuple(replace(r, force=1000.0 * r.force) for r in base.records)
+    )
+    one, two = run_study(base), run_study(scaled)
+    first, second = (terms(s.bands[0])["fractional-derivative"] for s in (one, two))
+    assert second.fitted.coefficient == pytest.approx(1000.0 * first.fitted.coefficient, rel=1e-4)
+    assert second.fitted.shape["order"] == pytest.approx(first.fitted.shape["order"], abs=1e-5)
+    assert one.bands[0].probability == pytest.approx(two.bands[0].probability, abs=1e-3)
+    assert np.isfinite(two.relative_error_percent)
