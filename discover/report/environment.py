@@ -76,6 +76,7 @@ def environment() -> jinja2.Environment:
         counted=words.counted,
         band_range=words.band_range,
         not_ruled_out=not_ruled_out,
+        capitalize_first=words.capitalize_first,
         prose=prose,
         spread=words.spread,
         unit=unit,

@@ -7,6 +7,7 @@ from typing import Any
 
 from discover.report.words import (
     band_range,
+    capitalize_first,
     coordinate_name,
     coordinate_value,
     counted,
@@ -167,4 +168,4 @@ def named_line(line: str) -> tuple[str, str]:
     ('Structure', 'One band')
     """
     name, _, text = line.partition(": ")
-    return name, text[:1].upper() + text[1:]
+    return name, capitalize_first(text)

@@ -181,3 +181,14 @@ def spread(ends: Sequence[float]) -> str:
     """
     low, high = (significant(e, 3) for e in ends)
     return low if low == high else f"{low} to {high}"
+
+
+def capitalize_first(text: str) -> str:
+    """Return text with its first letter raised and the rest as it is.
+
+    Examples
+    --------
+    >>> capitalize_first("iOIM and FOIM")
+    'IOIM and FOIM'
+    """
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,242 @@
+"""Pictures of a gap search: records before and after, loops, the effect's shape, the contest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from discover.figure_data import EffectShape, GapCurves, GapFigureData
+from discover.plots.style import (
+    ACCENT,
+    INK,
+    MODEL,
+    MUTED,
+    house_style,
+    new_figure,
+    plain_log_axis,
+    scaled,
+    to_svg,
+)
+
+_ROW = 17.0
+_BEFORE = "#8a94a0"
+_MOST_LOOPS = 2
+
+
+def gap_by_record(records: Sequence[Mapping[str, Any]]) -> str | None:
+    """Draw each record's gap before and after beside its noise floor, one row a record.
+
+    Parameters
+    ----------
+    records : sequence of mapping
+        As in ``gap.json``; None is returned for none.
+    """
+    if not records:
+        return None
+    values = [
+        v
+        for r in records
+        for v in (r["gap_before_percent"], r["gap_after_percent"], r["noise_percent"])
+        if v
+    ]
+    with house_style():
+        figure = new_figure(620, 100 + _ROW * max(len(records), 3))
+        axes = figure.add_subplot()
+        axes.set_xscale("log")
+        axes.set_xlim(min(values) / 1.3, max(values) * 1.3)
+        for row, record in enumerate(records):
+            ends = [record["gap_before_percent"], record["gap_after_percent"]]
+            axes.plot(ends, [row, row], color="#c5cdd6", linewidth=1.6, zorder=1)
+        rows = range(len(records))
+        axes.plot(
+            [r["noise_percent"] or np.nan for r in records],
+            rows,
+            linestyle="none",
+            marker="|",
+            markersize=11,
+            markeredgewidth=2.2,
+            color=MUTED,
+            label="noise floor",
+        )
+        for key, colour, label in (
+            ("gap_before_percent", _BEFORE, "before"),
+            ("gap_after_percent", MODEL, "after"),
+        ):
+            for held_out in sorted({bool(r["held_out"]) for r in records}):
+                group = [(r[key], i) for i, r in enumerate(records) if r["held_out"] == held_out]
+                axes.plot(
+                    *zip(*group, strict=True),
+                    "o",
+                    markersize=7.0,
+                    markerfacecolor="white" if held_out else colour,
+                    markeredgecolor=colour,
+                    markeredgewidth=1.5,
+                    label=f"{label}, held out" if held_out else label,
+                    zorder=3,
+                )
+        axes.set_ylim(max(len(records), 3) - 0.4, -0.6)
+        axes.set_yticks(rows, [str(r["file"]) for r in records])
+        axes.tick_params(axis="y", length=0, labelcolor=INK)
+        axes.grid(visible=False, axis="y")
+        axes.spines["left"].set_visible(False)
+        plain_log_axis(axes, which="x")
+        axes.set_xlabel("Gap, ‖force − model‖ / ‖force‖ (%)")
+        figure.legend(loc="outside upper left", ncols=3, columnspacing=1.2, handletextpad=0.4)
+        return to_svg(figure, name="gap-records", title="Gap of each record before and after")
+
+
+def gap_by_round(document: Mapping[str, Any]) -> str | None:
+    """Draw the pooled gap from round to round, fitted and held out; None without rounds."""
+    rounds = document["rounds"]
+    if not rounds:
+        return None
+    names = ["baseline", *(f"+ {r['effect']}" for r in rounds)]
+    with house_style():
+        figure = new_figure(620, 290)
+        axes = figure.add_subplot()
+        axes.set_yscale("log")
+        for key, colour, label in (("gap", ACCENT, "fitted"), ("held_out", MODEL, "held out")):
+            values = [rounds[0][f"{key}_before_percent"]]
+            values += [r[f"{key}_after_percent"] for r in rounds]
+            if all(v is not None for v in values):
+                axes.plot(range(len(values)), values, "o-", color=colour, label=label)
+        if document.get("noise_percent"):
+            axes.axhline(
+                document["noise_percent"],
+                color=MUTED,
+                linewidth=1.6,
+                linestyle=(0, (4, 2)),
+                label="noise floor",
+            )
+        axes.set_xticks(range(len(names)), names)
+        axes.tick_params(axis="x", labelcolor=INK, length=0)
+        axes.set_xlim(-0.3, len(names) - 0.7)
+        low, high = axes.get_ylim()
+        axes.set_ylim(low / 1.15, high * 1.15)
+        axes.set_ylabel("Gap (%)")
+        plain_log_axis(axes, which="y")
+        axes.grid(visible=False, axis="x")
+        figure.legend(loc="outside upper left", ncols=3)
+        return to_svg(figure, name="gap-rounds", title="The gap from round to round")
+
+
+def gap_loops(record: GapCurves, *, name: str) -> str:
+    """Draw force over time and over velocity: measured, baseline, mended model."""
+    with house_style():
+        figure = new_figure(620, 290)
+        over_time, over_speed = figure.subplots(1, 2, width_ratios=(1.15, 1.0), sharey=True)
+        curves = (record.force, record.before, record.after)
+        scale, unit = scaled(max(float(np.max(np.abs(c))) for c in curves), "N")
+        speed_scale, speed_unit = scaled(float(np.max(np.abs(record.velocity))), "m/s")
+        looks: tuple[tuple[str, dict[str, Any]], ...] = (
+            ("measured", {"color": INK, "linewidth": 1.2}),
+            ("before", {"color": _BEFORE, "linewidth": 1.6, "dashes": (2, 2)}),
+            ("after", {"color": MODEL, "linewidth": 1.5, "dashes": (5, 2)}),
+        )
+        for curve, (label, look) in zip(curves, looks, strict=True):
+            over_time.plot(record.time - record.time[0], scale * curve, label=label, **look)
+            over_speed.plot(speed_scale * record.velocity, scale * curve, **look)
+        over_time.set(xlabel="Time (s)", ylabel=f"Force ({unit})")
+        over_speed.set_xlabel(f"Velocity ({speed_unit})")
+        for axes in (over_time, over_speed):
+            axes.locator_params(nbins=5)
+        figure.legend(loc="outside upper left", ncols=3)
+        title = f"Force of {record.file}: measured, baseline and mended model"
+        return to_svg(figure, name=name, title=title)
+
+
+def telling_records(data: GapFigureData) -> list[GapCurves]:
+    """Return the records whose gap shrank most, above their noise."""
+    ranked = sorted(data.records, key=lambda r: r.gap_after_percent - r.gap_before_percent)
+    return ranked[:_MOST_LOOPS]
+
+
+def effect_shape(shape: EffectShape, *, name: str) -> str:
+    """Draw the force that an effect adds over what it follows, with its band."""
+    with house_style():
+        figure = new_figure(620, 300)
+        axes = figure.add_subplot()
+        x_scale, x_unit = scaled(float(np.max(np.abs(shape.x))), shape.unit)
+        peak = max(float(np.max(np.abs(c))) for c in (shape.lower, shape.upper, shape.force))
+        scale, unit = scaled(peak, "N")
+        if shape.measured.size:
+            axes.plot(
+                x_scale * shape.measured_x,
+                scale * shape.measured,
+                ".",
+                markersize=3.5,
+                color="#aab4c0",
+                label="measured less the rest of the model",
+            )
+        axes.fill_between(
+            x_scale * shape.x,
+            scale * shape.lower,
+            scale * shape.upper,
+            color=MODEL,
+            alpha=0.2,
+            linewidth=0.0,
+            label="95 % band",
+        )
+        axes.plot(x_scale * shape.x, scale * shape.force, color=MODEL, label=shape.effect)
+        axes.set(xlabel=f"{shape.abscissa.capitalize()} ({x_unit})", ylabel=f"Force ({unit})")
+        figure.legend(loc="outside upper left", ncols=3)
+        return to_svg(figure, name=name, title=f"Shape of {shape.effect}")
+
+
+def contest(entry: Mapping[str, Any], *, name: str) -> str:
+    """Draw the candidates of one round with their probabilities, the named one first."""
+    parts = [(str(entry["effect"]), float(entry["probability"]))]
+    parts += [
+        (str(a["effect"]), float(a["probability"]))
+        for a in entry.get("alternatives", ())
+        if a["effect"] != entry["effect"]
+    ]
+    with house_style():
+        figure = new_figure(620, 84 + 26 * len(parts))
+        axes = figure.add_subplot()
+        for row, (_, probability) in enumerate(parts):
+            axes.barh(row, 100.0 * probability, height=0.62, color=MODEL if row == 0 else _BEFORE)
+            text = "> 99" if probability > 0.995 else f"{100.0 * probability:.0f}"
+            axes.text(100.0 * probability + 1.0, row, f"{text} %", va="center", fontsize=9)
+        axes.set_xlim(0.0, 112.0)
+        axes.set_xticks([0, 25, 50, 75, 100])
+        axes.set_ylim(len(parts) - 0.5, -0.5)
+        axes.set_yticks(range(len(parts)), [label for label, _ in parts])
+        axes.tick_params(axis="y", length=0, labelcolor=INK)
+        axes.grid(visible=False, axis="y")
+        axes.spines["left"].set_visible(False)
+        axes.set_xlabel("Probability of the effect (%)")
+        return to_svg(figure, name=name, title=f"Candidates beside {entry['effect']}")
+
+
+def misfit_surface(data: GapFigureData) -> str | None:
+    """Draw the baseline's misfit over displacement and velocity; None where it is not given."""
+    if not data.surface:
+        return None
+    columns = sorted({c.displacement for c in data.surface})
+    rows = sorted({c.velocity for c in data.surface})
+    values = np.full((len(rows), len(columns)), np.nan)
+    for cell in data.surface:
+        values[rows.index(cell.velocity), columns.index(cell.displacement)] = cell.share
+    limit = float(np.nanmax(np.abs(values))) or 1.0
+    with house_style():
+        figure = new_figure(620, 400)
+        axes = figure.add_subplot()
+        mesh = axes.pcolormesh(
+            columns,
+            rows,
+            values,
+            cmap="PuOr_r",
+            vmin=-limit,
+            vmax=limit,
+            shading="nearest",
+            edgecolors="face",
+            linewidth=0.4,
+        )
+        bar = figure.colorbar(mesh, ax=axes)
+        bar.set_label("Misfit (of the records' rms misfit)")
+        axes.set(xlabel="Displacement (of its amplitude)", ylabel="Velocity (of its amplitude)")
+        axes.grid(visible=False)
+        return to_svg(figure, name="gap-surface", title="Where in the cycle the baseline misses")

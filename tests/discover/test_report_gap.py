@@ -1,0 +1,51 @@
+import pytest
+
+from discover.figure_data import GapFigureData
+from discover.report.gap import gap_figures, gap_lines, gap_report
+from tests.discover.sample_gap import sample_gap_data, sample_gap_document
+from tests.discover.test_report_study import Page
+
+
+def page_of(document, data):
+    return Page(gap_report(document, data, gap_figures(document, data), command="inerter gap rig"))
+
+
+def test_page_is_self_contained_and_carries_each_part():
+    page = page_of(sample_gap_document(), sample_gap_data())
+    assert page.open == []
+    assert len(page.ids) == len(set(page.ids))
+    assert all(a.startswith(("#", "data:image/png;base64,")) for a in page.addresses)
+    for part in (
+        "Round 1: Coulomb friction",
+        "Round 2: force offset",
+        "Record by record",
+        "Where the baseline misses",
+        "The effect's shape",
+        "395 to 409",
+        "Transition speed: 0.002",
+        "direction of motion",
+        "inerter gap rig",
+    ):
+        assert part in page.text
+    assert page.text.index("Closed: the gap is closed") < page.text.index("How the gap shrinks")
+
+
+def test_lines_name_effects_with_alternatives_and_both_gaps():
+    lines = [line.replace("\u202f", " ") for line in gap_lines(sample_gap_document())]
+    assert lines[1] == "Missing: Coulomb friction, sign v and force offset."
+    assert "93 %, or stribeck friction (6 %); gap 18.3 % to 2.4 %" in lines[2]
+    assert lines[4] == (
+        "Gap: 18.3 % before, 1.2 % after; 1.3 % on records that were not fitted; noise floor 1.1 %."
+    )
+
+
+@pytest.mark.parametrize("verdict", ["agrees", "unexplained"])
+def test_nothing_named_still_reports(verdict):
+    document = sample_gap_document()
+    document |= {"rounds": [], "verdict": verdict, "final_held_out_gap_percent": None}
+    if verdict == "unexplained":
+        document["shape"] = "odd in velocity, growing with the square of speed"
+    page = page_of(document, GapFigureData(records=sample_gap_data().records))
+    assert verdict.capitalize() in page.text
+    assert ("Odd in velocity" in page.text) == (verdict == "unexplained")
+    assert "Round 1" not in page.text
