@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import rgamma
 
-from models.fractional.convolution import convolve, weight_spectra
+from models.fractional.convolution import convolve, padded_length, weight_spectra
 from models.fractional.correction import (
     HEAD_SAMPLES,
     MOMENTS,
@@ -58,22 +58,26 @@ def causal_derivative(
     )
     scales = dt**-orders
     if not corrected and not caputo:
-        return convolve(x[None], np.zeros(orders.size, dtype=np.intp), spectra, scales)
+        return convolve(x[None], np.zeros(orders.size, dtype=np.intp), spectra, scales, x.shape[1])
     starts = np.stack([start_coefficients(row, POWERS) for row in x])
-    # Two variants of the record: as it is, and without its initial value for Caputo.
-    choice = ((orders > 0.0) & caputo).astype(np.intp)
-    coefficients = np.stack([starts, starts])
-    coefficients[1, :, 0] = 0.0
-    sources = np.stack([x, x - starts[:, :1]]) if choice.any() else x[None].copy()
+    # Variants of the record, as far as some order wants them: as it is, and less its initial
+    # value.
+    levelled, choice = np.unique((orders > 0.0) & caputo, return_inverse=True)
+    samples = x.shape[1]
+    sources = np.zeros((levelled.size, x.shape[0], padded_length(samples)))
+    known = np.stack([starts] * levelled.size)
+    for source, coefficients, without_level in zip(sources, known, levelled, strict=True):
+        np.subtract(x, starts[:, :1] if without_level else 0.0, out=source[:, :samples])
+        if without_level:
+            coefficients[:, 0] = 0.0
+        if corrected:
+            touched = min(MOMENTS, samples)
+            source[:, :touched] += (coefficients @ end_corrections(POWERS))[:, :touched]
+    out = convolve(sources, choice, spectra, scales, samples)
     if corrected:
-        touched = min(MOMENTS, x.shape[1])
-        for source, known in zip(sources, coefficients, strict=False):
-            source[:, :touched] += (known @ end_corrections(POWERS))[:, :touched]
-    out = convolve(sources, choice, spectra, scales)
-    if corrected:
-        head = min(HEAD_SAMPLES, x.shape[1])
+        head = min(HEAD_SAMPLES, samples)
         rest = head_corrections(tuple(orders.tolist()), p, POWERS)[:, :, :head]
-        out[:, :, :head] += scales[:, None, None] * (coefficients[choice] @ rest)
+        out[:, :, :head] += scales[:, None, None] * (known[choice] @ rest)
     # A slope that is only rounding leaves nothing to take off.
     moving = np.abs(starts[:, 1]) > 1e-15 * np.max(np.abs(x), axis=1)
     if caputo and moving.any():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -46,10 +47,15 @@ def expected_noise(measured: Roughness, orders: Array, p: int) -> Array:
     >>> bool(expected_noise(measured, np.array([1.9]), 1)[0] > 0.1)
     True
     """
-    weights = convolution_weights(orders, _NORM_WEIGHTS, p)
-    return np.asarray(
-        measured.noise * np.linalg.norm(weights, axis=1) / _scaled_size(measured, orders)
-    )
+    gain = _noise_gain(tuple(orders.tolist()), p)
+    return np.asarray(measured.noise * gain / _scaled_size(measured, orders))
+
+
+@functools.lru_cache(maxsize=64)
+def _noise_gain(orders: tuple[float, ...], p: int) -> Array:
+    """Rms of the derivative of white noise of unit size and sampling interval, (K,)."""
+    gain: Array = np.linalg.norm(convolution_weights(np.array(orders), _NORM_WEIGHTS, p), axis=1)
+    return gain
 
 
 def expected_truncation(measured: Roughness, orders: Array, p: int) -> Array:

@@ -147,20 +147,26 @@ def weight_spectra(
 
 
 def convolve(
-    sources: Array, choice: NDArray[np.intp], spectra: Sequence[Complex], scales: Array
+    sources: Array,
+    choice: NDArray[np.intp],
+    spectra: Sequence[Complex],
+    scales: Array,
+    samples: int,
 ) -> Array:
     """Convolve records causally with the weights of each order.
 
     Parameters
     ----------
-    sources : ndarray, shape (V, R, N)
-        Variants of R records.
+    sources : ndarray, shape (V, R, N) or (V, R, L)
+        Variants of R records; padded with zeros to L already, or not.
     choice : ndarray of int, shape (K,)
         The variant that each order works on.
     spectra : sequence of K ndarrays, shape (L // 2 + 1,)
         From `weight_spectra` for N samples.
     scales : ndarray, shape (K,)
         Factor of each order.
+    samples : int
+        N.
 
     Returns
     -------
@@ -170,10 +176,10 @@ def convolve(
     --------
     >>> rows = weight_spectra("ones", np.array([0.0]), 4, lambda a, n: np.ones((a.size, n)))
     >>> x = np.array([[[1.0, 2.0, 3.0, 4.0]]])
-    >>> convolve(x, np.array([0]), rows, np.array([1.0])).round(12)
+    >>> convolve(x, np.array([0]), rows, np.array([1.0]), 4).round(12)
     array([[[ 1.,  3.,  6., 10.]]])
     """
-    _, records, samples = sources.shape
+    records = sources.shape[1]
     length = padded_length(samples)
     out = np.empty((len(spectra), records, samples))
     transformed = scipy.fft.rfft(sources, n=length, axis=-1)

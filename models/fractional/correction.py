@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import functools
-import math
 
 import numpy as np
-from scipy.special import bernoulli, rgamma
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.special import bernoulli, factorial, rgamma
 
 from models.fractional.orders import Array
 from models.fractional.weights import convolution_weights, symbol_series
@@ -78,35 +78,22 @@ def head_corrections(orders: tuple[float, ...], p: int, count: int) -> Array:
     sequences = n ** np.arange(count)[:, None]
     sequences[:, :MOMENTS] += end_corrections(count)
     weights = convolution_weights(np.array(orders), HEAD_SAMPLES, p)
-    lags = np.arange(HEAD_SAMPLES)
-    shifts = lags[:, None] - lags[None, :]
-    causal = np.where(shifts >= 0, weights[:, np.abs(shifts)], 0.0)
-    series = symbol_series(np.array(orders), p)
-    wanted = np.zeros((len(orders), count, HEAD_SAMPLES))
-    for i, order in enumerate(orders):
-        for k in range(count):
-            wanted[i, k] = power_derivative(k, order, n)
-            for j in range(p, k + 1):
-                if k - j >= order:
-                    wanted[i, k] += series[i, j] * power_derivative(k, order + j, n)
-    rest: Array = wanted - np.einsum("anm,km->akn", causal, sequences, optimize=True)
+    # (K, n, m) weight n - m, zero before the first: a view, convolution by plain sums.
+    padded = np.pad(weights, ((0, 0), (HEAD_SAMPLES - 1, 0)))
+    causal = sliding_window_view(padded, HEAD_SAMPLES, axis=1)[:, :, ::-1]
+    alpha = np.array(orders)[:, None, None]
+    q = np.arange(count)[None, :, None]
+    # Derivatives of n^q / q!, at n = 0 their finite part.
+    single = np.where(n > 0.0, np.maximum(n, 1.0) ** (q - alpha) * rgamma(q + 1.0 - alpha), 0.0)
+    single[:, :, 0] = (alpha == q)[:, :, 0]
+    wanted = single.copy()
+    series = symbol_series(alpha[:, 0, 0], p)
+    for k in range(count):
+        for j in range(p, k + 1):
+            smooth = np.where(k - j >= alpha[:, 0, 0], series[:, j], 0.0)
+            wanted[:, k] += smooth[:, None] * single[:, k - j]
+    wanted *= factorial(q)
+    rest: Array = wanted - np.swapaxes(causal @ sequences.T, 1, 2)
     rest.setflags(write=False)
     return rest
 
-
-def power_derivative(k: int, order: float, n: Array) -> Array:
-    r"""Riemann-Liouville derivative of n^k: :math:`k!\,n^{k-\alpha}/\Gamma(k+1-\alpha)`.
-
-    At n = 0 its finite part.
-
-    Examples
-    --------
-    >>> power_derivative(1, 1.0, np.array([0.0, 2.0]))
-    array([1., 1.])
-    """
-    factor = math.factorial(k) * float(rgamma(k + 1.0 - order))
-    positive = n > 0.0
-    values = np.where(positive, np.where(positive, n, 1.0) ** (k - order) * factor, 0.0)
-    if order == k:
-        values[~positive] = math.factorial(k)
-    return np.asarray(values)

@@ -65,6 +65,12 @@ def symbol_series(orders: Array, p: int) -> Array:
     >>> float(symbol_series(np.array([1.0]), 1)[0, 1])
     -0.5
     """
+    return _symbol_series(tuple(orders.tolist()), p)
+
+
+@functools.lru_cache(maxsize=128)
+def _symbol_series(given: tuple[float, ...], p: int) -> Array:
+    orders = np.array(given)
     base = _difference_series(p)
     series = np.zeros((orders.size, _TERMS))
     series[:, 0] = 1.0
@@ -72,6 +78,7 @@ def symbol_series(orders: Array, p: int) -> Array:
         for k in range(1, n + 1):
             if base[k] != 0.0:
                 series[:, n] += (orders * k - (n - k)) * base[k] * series[:, n - k] / n
+    series.setflags(write=False)
     return series
 
 
@@ -119,10 +126,10 @@ def convolution_weights(orders: Array, count: int, p: int) -> Array:
     for k in np.flatnonzero(whole):
         weights[k, p * int(orders[k]) + 1 : head] = 0.0
     if count > head:
-        series = symbol_series(orders, p) * rgamma(-orders[:, None] - np.arange(_TERMS))
+        terms = symbol_series(orders, p) * rgamma(-orders[:, None] - np.arange(_TERMS))
         edges = [head, min(count, 16 * head), count]
         for start, stop in zip(edges[:-1], edges[1:], strict=True):
-            _fill_tail(weights[:, start:stop], orders, series, start)
+            _fill_tail(weights[:, start:stop], orders, terms, start)
     return weights
 
 
