@@ -57,7 +57,7 @@ def uncertainty(
     Uncertainty
     """
     dictionary = fits.dictionary
-    jacobian = _jacobian(fit, dictionary)
+    jacobian = jacobian_of(fit, dictionary)
     columns = fits.triangle.columns @ jacobian
     norms = np.linalg.norm(columns, axis=0)
     norms[norms == 0.0] = 1.0
@@ -93,7 +93,7 @@ def _correlation(covariance: Array) -> Array:
     return np.asarray(covariance / np.outer(scale, scale))
 
 
-def _jacobian(fit: SupportFit, dictionary: Dictionary) -> Array:
+def jacobian_of(fit: SupportFit, dictionary: Dictionary) -> Array:
     """Return (K, k + f): the columns, and their slopes with the free shapes."""
     slopes = []
     for position, identifier in enumerate(fit.support.free):

@@ -8,6 +8,7 @@ from typing import Any
 from discover._version import __version__
 from discover.dean import DeanCheck
 from discover.figure_data import StudyFigureData
+from discover.next_test import NextTest
 from discover.records import Finding
 from models.constitutive import FittedTerm, SegmentedModel
 
@@ -145,29 +146,6 @@ class StudyBoundary:
         if self.width is not None:
             result["width"] = self.width
         return result
-
-
-@dataclass(frozen=True)
-class NextTest:
-    """The test that would tell most."""
-
-    frequency_hz: float
-    """Hz."""
-    amplitude_m: float
-    """m."""
-    separates: tuple[str, str]
-    """What it would tell apart."""
-    gain: float
-    """Expected gain, nats."""
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the document's entry."""
-        return {
-            "frequency_hz": self.frequency_hz,
-            "amplitude_m": self.amplitude_m,
-            "separates": list(self.separates),
-            "gain": self.gain,
-        }
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from discover.study.accuracy import Accuracy, noise_percent, pooled_percent, pre
 from discover.study.bands import Bands, coordinate_values, find_bands
 from discover.study.figures import record_curves
 from discover.study.findings import study_findings
+from discover.study.next import next_test
 from discover.study.options import StudyOptions
 from discover.study.preparation import Prepared, prepare
 from discover.study.result import Nuisance, Study, StudyBand, StudyBoundary, TermEstimate
@@ -84,7 +85,7 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
         nuisance=nuisance,
         boundaries=boundaries,
         dean_check=check,
-        next_test=None,
+        next_test=next_test(prepared, bands, study_bands, boundaries, check, campaign.rig),
         model=model,
         figure_data=_figures(bands, prepared, accuracies, place, device),
     )
