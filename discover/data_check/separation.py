@@ -48,7 +48,7 @@ def inseparable_pairs(
     dictionary : Dictionary
         Of their columns.
     """
-    triangle = triangle_of(windows, 0.0)
+    triangle = triangle_of(windows)
     supports = {name: _with_friction(s, dictionary) for name, s in _SUPPORTS.items()}
     nominal = {name: _nominal_force(s, triangle, dictionary) for name, s in supports.items()}
     found = []
@@ -79,7 +79,7 @@ def expected_gap(
     dictionary : Dictionary
         Of their columns.
     """
-    triangle = triangle_of(windows, 0.0)
+    triangle = triangle_of(windows)
     force = _nominal_force(_with_friction(_SUPPORTS[truth], dictionary), triangle, dictionary)
     return _gap(force, _with_friction(_SUPPORTS[model], dictionary), triangle, dictionary)
 
