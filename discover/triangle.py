@@ -77,6 +77,8 @@ class Triangle:
     """Number of rows that it stands for."""
     log_determinant: float
     """Sum of the rows' log variances."""
+    unit: float = 1.0
+    """Standard deviation of a row's error: 1 where whitened."""
 
     @property
     def columns(self) -> Array:

@@ -7,7 +7,7 @@ solved exactly, on a triangle, so a fit costs microseconds whatever the number o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.optimize import minimize
@@ -130,13 +130,32 @@ def solve(columns: Array, target: Array) -> tuple[Array, float]:
     return coefficients, float(misfit @ misfit)
 
 
+def _without_reversal(triangle: Triangle, dictionary: Dictionary) -> Triangle:
+    """Return the triangle with the curve of reversal marginalised.
+
+    Its coefficients have a normal law of mean zero beforehand; eliminating them by QR, together
+    with rows that say so, leaves the least-squares problem of all other columns.
+    """
+    where = dictionary.reversal_positions
+    count = where.stop - where.start
+    if not count:
+        return triangle
+    others = np.delete(triangle.matrix, where, axis=1)
+    stacked = np.column_stack([triangle.matrix[:, where], others])
+    prior = np.zeros((count, stacked.shape[1]))
+    prior[:, :count] = np.eye(count) * triangle.unit / dictionary.reversal_scale
+    reduced = np.asarray(np.linalg.qr(np.concatenate([prior, stacked]), mode="r"))[count:, count:]
+    matrix = np.insert(reduced, [where.start] * count, 0.0, axis=1)
+    return replace(triangle, matrix=matrix)
+
+
 class ProfiledFit:
     """Fits of many supports on one triangle."""
 
     def __init__(self, triangle: Triangle, dictionary: Dictionary) -> None:
-        self.triangle = triangle
+        self.triangle = _without_reversal(triangle, dictionary)
         self.dictionary = dictionary
-        self.energy = float(triangle.target @ triangle.target)
+        self.energy = float(self.triangle.target @ self.triangle.target)
 
     def _without(self, identifier: str, base: Array) -> tuple[Array, Array, Array]:
         """Return a family's nodes' columns and the target with the base taken out, reduced.
@@ -189,7 +208,9 @@ class ProfiledFit:
         weights = np.column_stack([*shaped, stacked]) if shaped else stacked
         if weights.shape[1] == 0:
             empty = np.empty(0)
-            return SupportFit(support, (), empty, self.energy, valid=True, weights=weights, shares=empty)
+            return SupportFit(
+                support, (), empty, self.energy, valid=True, weights=weights, shares=empty
+            )
         columns = self.triangle.columns @ weights
         coefficients, chi2 = solve(columns, self.triangle.target)
         shares = np.linalg.norm(columns, axis=0) * np.abs(coefficients)

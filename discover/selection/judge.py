@@ -18,7 +18,12 @@ from discover.regression.support import (
 )
 from discover.selection.discrepancy import with_discrepancy
 from discover.selection.evidence import Contest, contest, name_of
-from discover.selection.materiality import Materiality, record_power, relative_triangle
+from discover.selection.materiality import (
+    Materiality,
+    RecordShares,
+    record_power,
+    relative_triangle,
+)
 from discover.selection.prediction import leave_out
 from discover.selection.structures import STRUCTURES, named_supports
 from discover.triangle import WindowRows, triangle_of
@@ -107,9 +112,14 @@ def judge(
     weighed = with_discrepancy(windows, dictionary, coordinate, start)
     result = contest(triangle_of(weighed), dictionary, supports)
     if not keep_all:
-        candidates = [s.fit.support for s in result.scored if np.isfinite(s.log_evidence)]
+        shares = RecordShares(windows)
+        candidates = [
+            s.fit.support
+            for s in result.scored
+            if np.isfinite(s.log_evidence) and not shares.negligible(s.fit)
+        ]
         if len({w.record for w in windows}) < _CROSS_CHECKED:
-            candidates = _material(result, Materiality(windows, dictionary))
+            candidates = _material(result, Materiality(windows, dictionary), set(candidates))
         candidates = candidates[:_KEPT] or [result.scored[0].fit.support]
         for _ in range(_ROUNDS):
             leading = candidates[0]
@@ -145,13 +155,15 @@ def judge(
     )
 
 
-def _material(result: Contest, materiality: Materiality) -> list[Support]:
+def _material(
+    result: Contest, materiality: Materiality, among: set[Support]
+) -> list[Support]:
     """Return the supports whose terms all matter, best first, some of every structure."""
     kept: list[Support] = []
     count = dict.fromkeys(STRUCTURES, 0)
     for scored in result.scored:
         full = len(kept) >= _KEPT and count[scored.structure] >= _KEPT_OF_EACH
-        if full or not np.isfinite(scored.log_evidence):
+        if full or scored.fit.support not in among:
             continue
         if materiality.holds(scored.fit.support):
             kept.append(scored.fit.support)

@@ -17,13 +17,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from discover.library.dictionary import Dictionary
-from discover.regression.support import ProfiledFit, Support
+from discover.regression.support import ProfiledFit, Support, SupportFit
 from discover.triangle import Triangle, WindowRows, reduce_rows
 
 _PLAIN_KIN = {
     "fractional-derivative": ("inertia", "viscous-damping", "stiffness"),
     "power-law-damping": ("coulomb-friction", "viscous-damping", "quadratic-damping"),
 }
+NEGLIGIBLE = 2e-3
+"""Share of the force below which, in every record, a term is not worth a name: load cells and
+fitted curves of friction are not better than that."""
+_RELATIVE_UNIT = 0.01  # a row's error over the force, as weighed against prior knowledge
 _AT_BOUND = 1e-3  # of the range: a shape this near its end is not identified
 
 
@@ -41,7 +45,8 @@ def relative_triangle(windows: Sequence[WindowRows]) -> Triangle:
     """Return the triangle with every record's rows over its force's root mean square."""
     power = record_power(windows)
     matrix = np.concatenate([w.matrix * np.sqrt(w.share / power[w.record]) for w in windows])
-    return Triangle(reduce_rows(matrix), int(sum(w.count.sum() for w in windows)), 0.0)
+    rows = int(sum(w.count.sum() for w in windows))
+    return Triangle(reduce_rows(matrix), rows, 0.0, unit=_RELATIVE_UNIT)
 
 
 def noise_energy(windows: Sequence[WindowRows]) -> tuple[float, float]:
@@ -50,6 +55,26 @@ def noise_energy(windows: Sequence[WindowRows]) -> tuple[float, float]:
     scales = np.concatenate([w.variance * w.share / power[w.record] for w in windows])
     counts = np.concatenate([w.count for w in windows])
     return float(counts @ scales), float(np.sqrt(2.0 * counts @ scales**2))
+
+
+class RecordShares:
+    """What part of some record's force a term makes, at the most over records."""
+
+    def __init__(self, windows: Sequence[WindowRows]) -> None:
+        self._rows = [w.matrix[:, :-1] / np.sqrt(max(w.power, 1e-300)) for w in windows]
+        self._norms = np.array([np.linalg.norm(r, axis=0) for r in self._rows])
+
+    def negligible(self, fit: SupportFit) -> bool:
+        """Return whether a term makes less than two thousandths of every record's force."""
+        for weights, coefficient in zip(fit.weights.T, fit.coefficients, strict=True):
+            used = np.flatnonzero(weights)
+            if used.size == 1:
+                norms = self._norms[:, used[0]] * abs(weights[used[0]])
+            else:
+                norms = np.array([np.linalg.norm(r[:, used] @ weights[used]) for r in self._rows])
+            if float(norms.max()) * abs(coefficient) < NEGLIGIBLE:
+                return True
+        return False
 
 
 class Materiality:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -10,15 +11,19 @@ from joblib import Parallel, delayed
 from discover.library.dictionary import DELAY, PLAIN, Dictionary, standard_dictionary
 from discover.motion_fit import Observation, observe
 from discover.records import Campaign, Finding, Record
-from discover.regression.support import MOST_DELAY, Support
+from discover.regression.support import MOST_DELAY, Support, solve
 from discover.selection.delay import further_delay, rich_delay
+from discover.selection.materiality import relative_triangle
 from discover.selection.structures import FRACTIONAL, POWER, candidate_supports
-from discover.selection.variants import settle_variants
+from discover.selection.variants import rich_weights, settle_variants
 from discover.study.options import StudyOptions
 from discover.triangle import WindowRows, rows_of
 from models.checks import InputError
 from models.terms import find_term
 
+_REVERSAL_SCALE = 0.5
+_TRANSITION_ROUNDS = 2
+_TRANSITIONS = 7
 _DELAY_ROUNDS = 5
 _NO_DELAY = 2e-6  # s
 _ORDERS = (0.0, 2.0)
@@ -87,21 +92,28 @@ def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
     )
     delay_found = 0.0
     for _ in range(_DELAY_ROUNDS):
-        rows = [rows_of(o, dictionary, i, delay=delay_found) for i, o in enumerate(observations)]
-        fitted = [w for o, r in zip(observations, rows, strict=True) if not o.held_out for w in r]
+        fitted = _fitted_rows(observations, dictionary, delay_found)
         find = further_delay if delay_found else rich_delay
         step = find(fitted, dictionary)
         if abs(step) < _NO_DELAY or abs(delay_found + step) > MOST_DELAY:
             break
         delay_found += step
     settled, small = settle_variants(fitted, dictionary)
-    kept = [dictionary.columns.index(c) for c in small.columns]
-    positions = [*kept, *range(len(dictionary.columns), dictionary.size + 1)]
+    for _ in range(_TRANSITION_ROUNDS):
+        closer = _closer(dictionary, small)
+        if closer is None:
+            break
+        dictionary = closer
+        fitted = _fitted_rows(observations, dictionary, delay_found)
+        settled, small = settle_variants(fitted, dictionary)
+    if small.has("coulomb-friction") and small.transition_speeds[0] > 0.0:
+        small = small.with_reversal(_REVERSAL_SCALE * _friction(settled, small))
+        settled = _fitted_rows(observations, small, delay_found)
     held = [
-        _restricted(w, positions)
-        for o, r in zip(observations, rows, strict=True)
+        w
+        for i, o in enumerate(observations)
         if o.held_out
-        for w in r
+        for w in rows_of(o, small, i, delay=delay_found)
     ]
     if options.terms is None:
         supports = tuple(candidate_supports(small))
@@ -120,8 +132,38 @@ def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
     )
 
 
-def _restricted(window: WindowRows, positions: list[int]) -> WindowRows:
-    return replace(window, matrix=window.matrix[:, positions])
+def _fitted_rows(
+    observations: tuple[Observation, ...], dictionary: Dictionary, delay: float
+) -> list[WindowRows]:
+    return [
+        w
+        for i, o in enumerate(observations)
+        if not o.held_out
+        for w in rows_of(o, dictionary, i, delay=delay)
+    ]
+
+
+def _friction(windows: Sequence[WindowRows], dictionary: Dictionary) -> float:
+    """Return Coulomb friction beside a rich model, N; at least a thousandth of the force."""
+    triangle = relative_triangle(windows)
+    weights = rich_weights(dictionary)
+    coefficients, _ = solve(triangle.columns @ weights, triangle.target)
+    found = abs(float(coefficients[dictionary.index("coulomb-friction")]))
+    return max(found, 1e-3 * float(np.sqrt(np.median([w.power for w in windows]))))
+
+
+def _closer(dictionary: Dictionary, settled: Dictionary) -> Dictionary | None:
+    """Return the dictionary with transition speeds between the best one's neighbours.
+
+    None where friction jumps: then there is nothing to refine.
+    """
+    if not settled.has("coulomb-friction") or settled.transition_speeds[0] == 0.0:
+        return None
+    speeds = dictionary.transition_speeds
+    best = int(np.searchsorted(speeds, settled.transition_speeds[0]))
+    low = speeds[best - 1] if best > 0 and speeds[best - 1] > 0.0 else 0.5 * speeds[best]
+    high = speeds[best + 1] if best + 1 < speeds.size else 2.0 * speeds[best]
+    return dictionary.with_transitions(np.geomspace(low, high, _TRANSITIONS))
 
 
 def _plain_terms(terms: tuple[str, ...]) -> tuple[str, ...]:
