@@ -10,6 +10,7 @@ import numpy as np
 
 from models.fractional.band_limit import noise_cutoff
 from models.fractional.harmonics import HarmonicFit, fit_harmonics
+from models.fractional.kinks import Kink, find_kinks
 from models.fractional.noise import Roughness, roughness
 from models.fractional.orders import Array
 from models.fractional.spectral import TRANSITION
@@ -34,6 +35,8 @@ class Choice:
     """Hz, where there is a low-pass."""
     fits: tuple[HarmonicFit, ...] = ()
     """One for each record, for "harmonics"."""
+    kinks: tuple[tuple[Kink, ...], ...] = ()
+    """Those of each record, where some record has any."""
 
 
 def expected_noise(measured: Roughness, orders: Array, p: int) -> Array:
@@ -117,8 +120,8 @@ def choose_causal(rows: Array, orders: Array, dt: float) -> Choice:
     """Choose for a derivative from the first sample on.
 
     The number of steps balances truncation against noise, as both are seen in the record.
-    Where noise spoils them all, a record of few harmonics is replaced by their fit, any other
-    one low-passed.
+    Kinks of a clean record are found and treated apart. Where noise spoils all schemes, a
+    record of few harmonics is replaced by their fit, any other one low-passed.
 
     Parameters
     ----------
@@ -137,9 +140,10 @@ def choose_causal(rows: Array, orders: Array, dt: float) -> Choice:
     True
     """
     name, error = best_steps(rows, orders)
-    best = Choice(name)
     if error <= _FIT_ABOVE or rows.shape[1] < 32:
-        return best
+        kinks = tuple(find_kinks(row) for row in rows)
+        return Choice(name, kinks=kinks if any(kinks) else ())
+    best = Choice(name)
     fits = _explaining_fits(rows, [roughness(row) for row in rows])
     if fits:
         return Choice("harmonics", fits=fits)

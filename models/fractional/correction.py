@@ -1,4 +1,4 @@
-"""Starting correction: what makes the schemes exact for powers of time from the first sample."""
+"""Starting correction: what makes the schemes exact for powers of time from their first sample."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import functools
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.special import bernoulli, factorial, rgamma
+from scipy.special import bernoulli, comb, factorial, rgamma
 
 from models.fractional.orders import Array
 from models.fractional.weights import convolution_weights, symbol_series
@@ -19,14 +19,21 @@ HEAD_SAMPLES = 128
 """Samples after which nothing but the scheme's own order is left."""
 
 
-@functools.cache
-def end_corrections(count: int) -> Array:
-    r"""Return e_k(m): what to add to the first samples of n^k, k = 0 .. count - 1.
+@functools.lru_cache(maxsize=64)
+def end_corrections(count: int, offset: float = 0.0) -> Array:
+    r"""Return e_k(n): what to add to the first samples of (n + u)^k, k = 0 .. count - 1.
 
-    The sum over samples :math:`\sum_n n^k e^{-nz}` differs from the integral
-    :math:`k!/z^{k+1}` by :math:`\sum_j \zeta(-k-j)(-z)^j/j!`, which leaves errors that decay
+    The sum over samples :math:`\sum_n (n+u)^k e^{-(n+u)z}` differs from the integral
+    :math:`k!/z^{k+1}` by :math:`\sum_j \zeta(-k-j,u)(-z)^j/j!`, which leaves errors that decay
     only like t^(-alpha-1). Eight samples with the opposite moments remove them, for every order
     alike: an end correction as in Gregory's rule.
+
+    Parameters
+    ----------
+    count : int
+        Powers.
+    offset : float
+        u, 0 to 1: how long before the first sample the power begins, in samples.
 
     Returns
     -------
@@ -41,17 +48,19 @@ def end_corrections(count: int) -> Array:
     wanted = np.zeros((MOMENTS, count))
     for k in range(count):
         for j in range(MOMENTS):
-            m = k + j
-            # zeta(-m) = -B_{m+1}/(m+1) for m >= 1; the sum from n = 0 of n^0 has 1 + zeta(0).
-            zeta = 0.5 if m == 0 else -numbers[m + 1] / (m + 1)
-            wanted[j, k] = -zeta
-    powers = np.arange(MOMENTS)[None, :] ** np.arange(MOMENTS)[:, None]
-    return np.ascontiguousarray(np.linalg.solve(powers.astype(np.float64), wanted).T)
+            # zeta(-m, u) = -B_{m+1}(u) / (m + 1), with 0^0 = 1 where u = 0.
+            m = k + j + 1
+            terms = [comb(m, i) * numbers[i] * offset ** (m - i) for i in range(m + 1)]
+            wanted[j, k] = sum(terms) / m
+    powers = (np.arange(MOMENTS) + offset)[None, :] ** np.arange(MOMENTS)[:, None]
+    return np.ascontiguousarray(np.linalg.solve(powers, wanted).T)
 
 
 @functools.lru_cache(maxsize=64)
-def head_corrections(orders: tuple[float, ...], p: int, count: int) -> Array:
-    r"""Return what is left to add to the first outputs for n^k, k = 0 .. count - 1.
+def head_corrections(
+    orders: tuple[float, ...], p: int, count: int, offset: float = 0.0
+) -> Array:
+    r"""Return what is left to add to the first outputs for (n + u)^k, k = 0 .. count - 1.
 
     Parameters
     ----------
@@ -59,14 +68,16 @@ def head_corrections(orders: tuple[float, ...], p: int, count: int) -> Array:
     p : int
         Steps of the backward difference formula.
     count : int
+    offset : float
+        u, as for `end_corrections`.
 
     Returns
     -------
     ndarray, shape (K, count, 128)
-        :math:`\frac{k!}{\Gamma(k+1-\alpha)}n^{k-\alpha}` less the scheme's result on
-        n^k + e_k, but for those parts of the scheme's error that are smooth from the start on:
-        they are its order of convergence, and taking them off here would leave a step behind.
-        At n = 0 the finite part is the exact value.
+        :math:`\frac{k!}{\Gamma(k+1-\alpha)}(n+u)^{k-\alpha}` less the scheme's result on
+        (n + u)^k + e_k, but for those parts of the scheme's error that are smooth from the start
+        on: they are its order of convergence, and taking them off here would leave a step
+        behind. At n + u = 0 the finite part is the exact value.
 
     Examples
     --------
@@ -74,9 +85,9 @@ def head_corrections(orders: tuple[float, ...], p: int, count: int) -> Array:
     >>> bool(np.max(np.abs(rest[0, :2, -1])) < 1e-11)
     True
     """
-    n = np.arange(HEAD_SAMPLES, dtype=np.float64)
+    n = np.arange(HEAD_SAMPLES) + offset
     sequences = n ** np.arange(count)[:, None]
-    sequences[:, :MOMENTS] += end_corrections(count)
+    sequences[:, :MOMENTS] += end_corrections(count, offset)
     weights = convolution_weights(np.array(orders), HEAD_SAMPLES, p)
     # (K, n, m) weight n - m, zero before the first: a view, convolution by plain sums.
     padded = np.pad(weights, ((0, 0), (HEAD_SAMPLES - 1, 0)))
@@ -84,8 +95,9 @@ def head_corrections(orders: tuple[float, ...], p: int, count: int) -> Array:
     alpha = np.array(orders)[:, None, None]
     q = np.arange(count)[None, :, None]
     # Derivatives of n^q / q!, at n = 0 their finite part.
-    single = np.where(n > 0.0, np.maximum(n, 1.0) ** (q - alpha) * rgamma(q + 1.0 - alpha), 0.0)
-    single[:, :, 0] = (alpha == q)[:, :, 0]
+    single = np.where(n > 0.0, n, 1.0) ** (q - alpha) * rgamma(q + 1.0 - alpha)
+    if offset == 0.0:
+        single[:, :, 0] = (alpha == q)[:, :, 0]
     wanted = single.copy()
     series = symbol_series(alpha[:, 0, 0], p)
     for k in range(count):

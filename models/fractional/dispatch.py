@@ -18,6 +18,7 @@ from models.fractional.choice import (
 )
 from models.fractional.estimate import relative_rms, truncation_error
 from models.fractional.harmonics import fit_harmonics, harmonic_derivative
+from models.fractional.kinks import Kink, find_kinks, kinked_derivative
 from models.fractional.l1 import l1_derivative
 from models.fractional.noise import roughness
 from models.fractional.orders import Array, checked_orders, checked_record
@@ -58,11 +59,12 @@ def derivative(
         the Riemann-Liouville derivative as dt falls. Weyl acts from minus infinity: steady
         state.
     scheme : str, optional
-        How. "auto" chooses by noise and kind of record. Causal kinds: "bdf2" to "bdf6"
-        (order of convergence by name, with starting correction), "gl" (the same of order 1),
-        "l1" (Caputo, orders in (0, 1)), "harmonics" or "band-limited" (the record replaced by
-        its fit, or low-passed, first). Weyl: "spectral" (whole periods), "harmonics" (a sine
-        test, cycles whole or not), "band-limited" (anything else).
+        How. "auto" chooses by noise and kind of record, and treats kinks apart.
+        Causal kinds: "bdf2" to "bdf6" (order of convergence by name, with starting
+        correction), "gl" (the same of order 1), "l1" (Caputo, orders in (0, 1)), "harmonics" or
+        "band-limited" (the record replaced by its fit, or low-passed, first). Weyl: "spectral"
+        (whole periods), "harmonics" (a sine test, cycles whole or not), "band-limited"
+        (anything else).
 
     Returns
     -------
@@ -151,7 +153,7 @@ def _compute(
     else:
         clean = _smoothed(task, choice)
         label = choice.scheme if clean is None else _AFTER_SMOOTHING
-        out = _causal(task, label, task.rows if clean is None else clean, step)
+        out = _causal(task, label, task.rows if clean is None else clean, step, choice.kinks)
         error = np.zeros(orders.size)
         if estimate:
             error = _causal_error(task, choice, label, clean, out)
@@ -230,13 +232,18 @@ def _smoothed(task: _Task, choice: Choice) -> Array | None:
     return None
 
 
-def _causal(task: _Task, scheme: str, rows: Array, dt: float) -> Array:
+def _causal(
+    task: _Task, scheme: str, rows: Array, dt: float, kinks: tuple[tuple[Kink, ...], ...] = ()
+) -> Array:
     """Return derivatives from the first sample on, (K, R, N)."""
     if scheme == "l1":
         return l1_derivative(rows, task.orders, dt)
+    caputo = task.kind == "caputo"
+    if kinks:
+        return kinked_derivative(rows, task.orders, dt, kinks, scheme=scheme, caputo=caputo)
     bare = task.kind == "grunwald-letnikov"
     return causal_derivative(
-        rows, task.orders, dt, scheme=scheme, caputo=task.kind == "caputo", corrected=not bare
+        rows, task.orders, dt, scheme=scheme, caputo=caputo, corrected=not bare
     )
 
 
@@ -246,9 +253,12 @@ def _causal_error(
     """Return the relative rms error, (K,), of a derivative from the first sample on."""
     rows = task.rows if clean is None else clean
     p = BDF_STEPS.get(scheme, 2)
-    error = truncation_error(
-        lambda x, dt: _causal(task, scheme, x, dt), rows, task.dt, out, p
-    )
+
+    def coarser(x: Array, dt: float) -> Array:
+        kinks = tuple(find_kinks(row) for row in x) if choice.kinks else ()
+        return _causal(task, scheme, x, dt, kinks)
+
+    error = truncation_error(coarser, rows, task.dt, out, p)
     if clean is None:
         noise = [expected_noise(roughness(row), task.orders, p) for row in rows]
         return np.asarray(np.hypot(error, np.max(noise, axis=0)))

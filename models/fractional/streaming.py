@@ -200,7 +200,7 @@ def stream_derivative(
         Sampling interval, s.
     kind : {"caputo", "riemann-liouville"}, optional
     scheme : {"auto", "gl", "bdf2", ..., "bdf6"}, optional
-        "auto" balances truncation against noise in the samples held back.
+        "auto" balances truncation against noise in the samples held back; it seeks no kinks.
 
     Yields
     ------
