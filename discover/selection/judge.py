@@ -20,7 +20,7 @@ from discover.selection.discrepancy import with_discrepancy
 from discover.selection.evidence import Contest, contest, name_of
 from discover.selection.materiality import (
     Materiality,
-    RecordShares,
+    Worth,
     record_power,
     relative_triangle,
 )
@@ -112,11 +112,11 @@ def judge(
     weighed = with_discrepancy(windows, dictionary, coordinate, start)
     result = contest(triangle_of(weighed), dictionary, supports)
     if not keep_all:
-        shares = RecordShares(windows)
+        worth = Worth(windows, [s.fit for s in result.scored])
         candidates = [
             s.fit.support
             for s in result.scored
-            if np.isfinite(s.log_evidence) and not shares.negligible(s.fit)
+            if np.isfinite(s.log_evidence) and worth.all_terms(s.fit)
         ]
         if len({w.record for w in windows}) < _CROSS_CHECKED:
             candidates = _material(result, Materiality(windows, dictionary), set(candidates))

@@ -24,9 +24,8 @@ _PLAIN_KIN = {
     "fractional-derivative": ("inertia", "viscous-damping", "stiffness"),
     "power-law-damping": ("coulomb-friction", "viscous-damping", "quadratic-damping"),
 }
-NEGLIGIBLE = 2e-3
-"""Share of the force below which, in every record, a term is not worth a name: load cells and
-fitted curves of friction are not better than that."""
+NEGLIGIBLE = 1e-3
+"""Share of the force below which, in every record, a change is not seen."""
 _RELATIVE_UNIT = 0.01  # a row's error over the force, as weighed against prior knowledge
 _AT_BOUND = 1e-3  # of the range: a shape this near its end is not identified
 
@@ -57,24 +56,31 @@ def noise_energy(windows: Sequence[WindowRows]) -> tuple[float, float]:
     return float(counts @ scales), float(np.sqrt(2.0 * counts @ scales**2))
 
 
-class RecordShares:
-    """What part of some record's force a term makes, at the most over records."""
+class Worth:
+    """Tells whether a term changes any record's force by enough to be worth a name."""
 
-    def __init__(self, windows: Sequence[WindowRows]) -> None:
+    def __init__(self, windows: Sequence[WindowRows], fits: Sequence[SupportFit]) -> None:
         self._rows = [w.matrix[:, :-1] / np.sqrt(max(w.power, 1e-300)) for w in windows]
-        self._norms = np.array([np.linalg.norm(r, axis=0) for r in self._rows])
+        self._fits = {_key(f.support): f for f in fits if f.valid}
 
-    def negligible(self, fit: SupportFit) -> bool:
-        """Return whether a term makes less than two thousandths of every record's force."""
-        for weights, coefficient in zip(fit.weights.T, fit.coefficients, strict=True):
-            used = np.flatnonzero(weights)
-            if used.size == 1:
-                norms = self._norms[:, used[0]] * abs(weights[used[0]])
-            else:
-                norms = np.array([np.linalg.norm(r[:, used] @ weights[used]) for r in self._rows])
-            if float(norms.max()) * abs(coefficient) < NEGLIGIBLE:
-                return True
-        return False
+    def all_terms(self, fit: SupportFit) -> bool:
+        """Return whether leaving out any one term, all else refitted, shows in some record.
+
+        A term whose absence changes the model's force by less than a thousandth everywhere is
+        not seen by any load cell, nor by a fitted curve of friction.
+        """
+        for identifier in fit.support.ids:
+            less = self._fits.get(_key(without(fit.support, identifier)))
+            if less is None:
+                continue
+            change = fit.combined - less.combined
+            if max(float(np.linalg.norm(r @ change)) for r in self._rows) < NEGLIGIBLE:
+                return False
+        return True
+
+
+def _key(support: Support) -> tuple[frozenset[object], ...]:
+    return frozenset(support.plain), frozenset(support.free), frozenset(support.fixed)
 
 
 class Materiality:
@@ -84,11 +90,11 @@ class Materiality:
         self._engine = ProfiledFit(relative_triangle(windows), dictionary)
         noise, deviation = noise_energy(windows)
         self._noise = noise + 3.0 * deviation
-        self._misfit: dict[tuple[object, ...], float] = {}
+        self._misfit: dict[tuple[frozenset[object], ...], float] = {}
 
     def misfit(self, support: Support) -> float:
         """Return the relative misfit energy of a support, fitted in this metric."""
-        key = (frozenset(support.plain), frozenset(support.free), frozenset(support.fixed))
+        key = _key(support)
         if key not in self._misfit:
             self._misfit[key] = self._engine.fit(support).chi2
         return self._misfit[key]
