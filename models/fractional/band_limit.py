@@ -7,12 +7,12 @@ import math
 import numpy as np
 import scipy.fft
 from numpy.typing import ArrayLike
-from scipy.signal.windows import kaiser
 
 from models.checks import number
 from models.fractional.continuation import continue_record, end_fit
 from models.fractional.orders import Array, checked_orders, checked_record
 from models.fractional.spectral import TRANSITION, harmonic_factors, low_pass_gain
+from models.fractional.window import kaiser_window
 
 # Lengths at each end, in periods of the cut-off: fitted, and added beyond the record.
 _FITTED = 6.0
@@ -146,7 +146,7 @@ def band_limited_derivative(
 def _out_of_band(centred: Array, band: float) -> Array:
     """Rms of what the low-pass removes altogether, over the rms of all, (R,)."""
     samples = centred.shape[1]
-    power = np.abs(scipy.fft.rfft(centred * kaiser(samples, _KAISER, sym=False))) ** 2
+    power = np.abs(scipy.fft.rfft(centred * kaiser_window(samples, _KAISER))) ** 2
     above = power[:, scipy.fft.rfftfreq(samples) > TRANSITION * band].sum(axis=1)
     share = np.sqrt(above / np.maximum(power.sum(axis=1), 1e-300))
     return np.asarray(np.clip(share, _LEAST_NOISE, 1.0))
@@ -201,7 +201,7 @@ def noise_cutoff(x: ArrayLike, dt: float, order: float = 2.0) -> float:
     alpha = float(checked_orders(order)[0][0])
     samples = values.shape[-1]
     rows = values.reshape(-1, samples)
-    window = kaiser(samples, _KAISER, sym=False)
+    window = kaiser_window(samples, _KAISER)
     power = np.abs(scipy.fft.rfft((rows - rows.mean(axis=1, keepdims=True)) * window)) ** 2
     frequency = scipy.fft.rfftfreq(samples, step)
     nyquist = 0.5 / step

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
-from scipy.signal.windows import kaiser
 
 from models.fractional.orders import Array
 from models.fractional.spectral import harmonic_factors
+from models.fractional.window import kaiser_window
 
 _KAISER = 14.0
 _ITERATIONS = 20
@@ -100,7 +100,7 @@ def harmonic_derivative(fit: HarmonicFit, orders: Array, dt: float, samples: int
 
 def _strongest_line(x: Array) -> float:
     """Angular frequency per sample of the strongest line."""
-    centred = (x - x.mean()) * kaiser(x.size, _KAISER, sym=False)
+    centred = (x - x.mean()) * kaiser_window(x.size, _KAISER)
     length = scipy.fft.next_fast_len(4 * x.size, real=True)
     size = np.abs(scipy.fft.rfft(centred, n=length))
     peak = int(np.clip(np.argmax(size), 1, size.size - 2))
