@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import nnls
 
 from discover.motion_fit.noise import density_between_lines
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
 from discover.records import Record
-from discover.sine_fit import harmonic_design
+from discover.sine_fit import harmonic_design, harmonic_series
 from models.checks import Array, InputError
 from models.fractional import harmonic_factors
 from models.motion import Motion, harmonic_motion
@@ -20,6 +21,8 @@ HARMONICS = 31  # of the force; friction's fall off as 1/k, so further ones deci
 GRID = 1024  # points of the one cycle kept for steady-state simulation
 _RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights stay finite
 _PHASES = 360
+_REVERSAL = 3e-3  # of the speed amplitude
+BoolArray = NDArray[np.bool_]
 
 
 def _lines(solution: Array, count: int) -> Lines:
@@ -47,6 +50,19 @@ def _motion_at(time: Array, frequency: float, displacement: Lines) -> Motion:
 
     x, v, a = differentiate(np.array([0.0, 1.0, 2.0]))
     return Motion(time, x, v, a, differentiate, "weyl")
+
+
+def _moving(time: Array, frequency: float, displacement: Lines | None) -> BoolArray:
+    """Return which samples lie clear of the reversals of motion.
+
+    Where friction reverses, a sample is on one side or the other by chance: where sampling and
+    test are in step, always the same ones. They are a five-hundredth of the samples.
+    """
+    if displacement is None:
+        return np.ones(time.size, dtype=bool)
+    orders = np.arange(displacement.size)
+    velocity = harmonic_series(time, frequency, 1j * orders * displacement)
+    return np.asarray(np.abs(velocity) > _REVERSAL * float(np.abs(velocity).max()))
 
 
 def observe_sine(
@@ -98,9 +114,13 @@ def observe_sine(
             "sampling", expected="above 2.5 times the frequency", found="less", where=record.file
         )
     design = harmonic_design(time, frequency, count, trend=duration * frequency > 2.0)
+    moving = _moving(time, frequency, displacement)
+    whole = design
+    design = whole[moving]
     factor = cho_factor(design.T @ design)
-    solution = cho_solve(factor, design.T @ force)
-    residual = force - design @ solution
+    solution = cho_solve(factor, design.T @ force[moving])
+    residual = np.where(moving, force - whole @ solution, 0.0)
+    time, force = time[moving], force[moving]
     drift = float(solution[-1]) if design.shape[1] % 2 == 0 else 0.0
     lines = _lines(solution, count)
 
