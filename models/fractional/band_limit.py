@@ -19,13 +19,12 @@ _FITTED = 6.0
 _ADDED = 5.0
 # A start that moves less than this share of the whole record is at rest.
 _QUIET = 0.05
-_LEAST_NOISE = 1e-6
 _KAISER = 18.0
 # Power over the noise floor that chance alone does not reach.
 _CLEAR = 20.0
 
 
-def low_pass(y: ArrayLike, dt: float, *, cutoff: float, edge_noise: float | None = None) -> Array:
+def low_pass(y: ArrayLike, dt: float, *, cutoff: float, edge_noise: float = 1e-6) -> Array:
     """Smooth records with the filter that `band_limited_derivative` uses, without phase.
 
     Parameters
@@ -37,9 +36,8 @@ def low_pass(y: ArrayLike, dt: float, *, cutoff: float, edge_noise: float | None
     cutoff : float
         Hz: all passes up to here, nothing above twice that.
     edge_noise : float, optional
-        Noise over signal that the extension beyond the ends reckons with; by default the
-        share of the record above the filter. Given a value, the result is linear in the record
-        up to its ends.
+        Noise over signal that the extension beyond the ends reckons with, at least; what the
+        record shows above the filter counts in any case.
 
     Returns
     -------
@@ -64,7 +62,7 @@ def low_pass(y: ArrayLike, dt: float, *, cutoff: float, edge_noise: float | None
 
 
 def band_limited_derivative(
-    x: ArrayLike, orders: ArrayLike, dt: float, *, cutoff: float, edge_noise: float | None = None
+    x: ArrayLike, orders: ArrayLike, dt: float, *, cutoff: float, edge_noise: float = 1e-6
 ) -> Array:
     r"""Differentiate records of any shape below a cut-off frequency.
 
@@ -84,9 +82,8 @@ def band_limited_derivative(
     cutoff : float
         Hz: all passes up to here, nothing above twice that. See `noise_cutoff`.
     edge_noise : float, optional
-        Noise over signal that the extension beyond the ends reckons with; by default the
-        share of the record above the filter. Given a value, the result is linear in the record
-        up to its ends.
+        Noise over signal that the extension beyond the ends reckons with, at least; what the
+        record shows above the filter counts in any case.
 
     Returns
     -------
@@ -111,17 +108,14 @@ def band_limited_derivative(
     values, step = checked_record(x, dt, min_samples=4)
     alpha, _ = checked_orders(orders)
     limit = number("cutoff", cutoff, above=0.0, at_most=0.5 / step)
-    if edge_noise is not None:
-        number("edge_noise", edge_noise, above=0.0)
     samples = values.shape[-1]
     rows = values.reshape(-1, samples)
     added = max(int(math.ceil(_ADDED / (limit * step))), 4)
     fitted = min(samples, max(int(math.ceil(_FITTED / (limit * step))), 8))
     level = _level(rows, fitted)
     centred = rows - level
-    ratio = _out_of_band(centred, limit * step)
-    if edge_noise is not None:
-        ratio[:] = edge_noise
+    least = number("edge_noise", edge_noise, above=0.0)
+    ratio = np.maximum(_out_of_band(centred, limit * step), least)
     fit = end_fit(fitted, added, limit * step)
     length = int(scipy.fft.next_fast_len(2 * samples + 2 * added, real=True))
     extended = np.zeros((rows.shape[0], length))
@@ -149,7 +143,7 @@ def _out_of_band(centred: Array, band: float) -> Array:
     power = np.abs(scipy.fft.rfft(centred * kaiser_window(samples, _KAISER))) ** 2
     above = power[:, scipy.fft.rfftfreq(samples) > TRANSITION * band].sum(axis=1)
     share = np.sqrt(above / np.maximum(power.sum(axis=1), 1e-300))
-    return np.asarray(np.clip(share, _LEAST_NOISE, 1.0))
+    return np.asarray(np.minimum(share, 1.0))
 
 
 def _level(rows: Array, fitted: int) -> Array:
