@@ -178,9 +178,9 @@ def check_dean(
             reason,
         )
 
-    if boundary is None:
+    if device is not None and boundary is None:
         return result("no-boundary", "One structure holds over all tests: there is no boundary.")
-    if device is None:
+    if device is None or boundary is None:
         return result(
             "no-geometry",
             "Without the device's geometry there is no Dean number; give [device] in"

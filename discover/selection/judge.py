@@ -189,7 +189,7 @@ def _predictive(
     share = float(np.clip((predictions.noise_share - low) / (high - low), 0.0, 1.0))
     parameters = np.array([f.support.parameters for f in fits])
     smallest = predictions.parsimonious(parameters)
-    near = [i for i, p in enumerate(parameters) if p <= parameters[smallest] + 1]
+    near = [i for i, p in enumerate(parameters) if p <= parameters[smallest] + 2]
     standing = {}
     for name in dict.fromkeys(names[i] for i in near):
         own = [i for i in near if names[i] == name]

@@ -108,6 +108,14 @@ def _other_forms(index: int, judgement: Judgement) -> list[Finding]:
     if not forms:
         return []
     own = " + ".join(i for i in best.fit.support.ids if i in _DAMPING)
+    if not own:
+        return [
+            Finding(
+                "warning",
+                f"Band {index + 1}: at this noise {'; '.join(forms[:3])} beside these terms can't"
+                " be ruled out.",
+            )
+        ]
     return [
         Finding(
             "warning",
