@@ -15,11 +15,14 @@ from discover.selection.judge import Judgement, judge
 from discover.selection.structures import EXTRAS, NUISANCE, named_supports
 from discover.study.options import StudyOptions
 from discover.study.preparation import Prepared
+from discover.transition import Transition, find_transition
 from discover.triangle import WindowRows
-from models.checks import Array
+from models.checks import Array, Indices
 from models.device import Device
 from models.flow import dean_per_speed
 
+_CLEARLY_GRADUAL = 3.0  # nats by which a gradual change must beat the sharp division
+_PURE = 0.25  # share of the other band's model up to which a test counts for its own
 _CLEARLY_BETTER = 5.0  # nats by which frequency must beat speed to become the coordinate
 
 
@@ -39,6 +42,8 @@ class Bands:
     """Nats by which the division by frequency beats that by speed; 0 where not compared."""
     single: bool
     """True where one record, or too few, allow one band only."""
+    transition: Transition | None = None
+    """The lowest boundary as a gradual change; None where it is sharp."""
 
 
 def coordinate_values(
@@ -100,16 +105,21 @@ def find_bands(prepared: Prepared, device: Device | None, options: StudyOptions)
         advantage = float(by_frequency.log_evidence.max() - division.log_evidence.max())
         if advantage > _CLEARLY_BETTER and by_frequency.bands > 1:
             chosen, values, division = "frequency", other, by_frequency
+    transition = None
+    if division.bands > 1 and options.bands is None:
+        transition = _gradual(weighed, values, division)
+        if transition is not None and division.bands > 2:
+            division = segment(weighed, values, prepared.dictionary, supports, bands=2)
     judgements = tuple(
         judge(
-            [windows[i] for i in division.members(b)],
+            [windows[i] for i in members],
             prepared.dictionary,
             prepared.supports,
-            values[division.members(b)],
+            values[members],
             keep_all=len(prepared.supports) == 1,
             seed=options.seed,
         )
-        for b in range(division.bands)
+        for members in (_clear(division, values, b, transition) for b in range(division.bands))
     )
     exponent = None
     if division.bands > 1:
@@ -119,7 +129,28 @@ def find_bands(prepared: Prepared, device: Device | None, options: StudyOptions)
         exponent = amplitude_exponent(
             some, _log_likelihood(some, lower), _log_likelihood(some, upper)
         )
-    return Bands(chosen, division, judgements, exponent, advantage, single)
+    return Bands(chosen, division, judgements, exponent, advantage, single, transition)
+
+
+def _gradual(
+    windows: Sequence[WindowRows], values: Array, division: Segmentation
+) -> Transition | None:
+    """Return a gradual change between the outer bands where it beats the sharp division."""
+    found = find_transition(windows, values, division.best[0].fit, division.best[-1].fit)
+    sharp = float(division.log_evidence[division.bands - 1])
+    return found if found.log_evidence > sharp + _CLEARLY_GRADUAL else None
+
+
+def _clear(
+    division: Segmentation, values: Array, band: int, transition: Transition | None
+) -> Indices:
+    """Return a band's windows, those in the middle of a gradual change left out where it can be."""
+    members = division.members(band)
+    if transition is None:
+        return members
+    share = transition.share(values[members])
+    inside = members[(share < _PURE) if band == 0 else (share > 1.0 - _PURE)]
+    return inside if inside.size >= MIN_WINDOWS else members
 
 
 def nuisance_terms(judgement: Judgement) -> tuple[str, ...]:

@@ -59,6 +59,14 @@ def study_findings(
             )
     for index, judgement in enumerate(bands.judgements):
         result += _other_forms(index, judgement)
+    if bands.transition is not None:
+        result.append(
+            Finding(
+                "note",
+                "The boundary is gradual: from a tenth to nine tenths of the upper band's model the"
+                f" {bands.coordinate} rises by a factor of {np.exp(bands.transition.width):.2g}.",
+            )
+        )
     for n in nuisance:
         result.append(_about_nuisance(n))
     if bands.frequency_advantage > 5.0 and bands.coordinate == "frequency":

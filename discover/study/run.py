@@ -66,8 +66,8 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
         _band(b, bands, prepared, model, accuracies, place) for b in range(len(bands.judgements))
     )
     boundaries = tuple(
-        _boundary(b, bands, device, chosen.convention, prepared)
-        for b in bands.segmentation.boundaries
+        _boundary(b, bands, device, chosen.convention, prepared, first=i == 0)
+        for i, b in enumerate(bands.segmentation.boundaries)
     )
     check = _dean(bands, boundaries, device, chosen)
     nuisance = _nuisance(bands.judgements, prepared.delay)
@@ -227,11 +227,17 @@ def _boundary(
     device: Device | None,
     convention: str,
     prepared: Prepared,
+    *,
+    first: bool,
 ) -> StudyBoundary:
     position = boundary.position
     order = bands.segmentation.order
     pair = [prepared.fitted[int(order[position + s])] for s in (-1, 0)]
     frequency = float(np.sqrt(pair[0].frequency * pair[1].frequency))
+    change = bands.transition if first else None
+    low, high = boundary.interval
+    if change is not None:
+        low, high = min(low, change.interval[0]), max(high, change.interval[1])
     scale = 1.0
     if bands.coordinate == "dean" and device is not None:
         scale = dean_per_speed(device, convention=convention)
@@ -240,16 +246,16 @@ def _boundary(
     if device is not None and speed is not None:
         per_speed = dean_per_speed(device, convention=convention)
         dean = speed * per_speed
-        low, high = boundary.interval
         dean_interval = (low / scale * per_speed, high / scale * per_speed)
     return StudyBoundary(
         coordinate=boundary.value,
         bracket=boundary.bracket,
-        interval=boundary.interval,
+        interval=(low, high),
         speed=speed,
         frequency_hz=boundary.value if bands.coordinate == "frequency" else frequency,
         dean=dean,
         dean_interval=dean_interval,
+        width=None if change is None else change.width,
     )
 
 
