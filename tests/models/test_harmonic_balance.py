@@ -78,7 +78,7 @@ def stable_states(branch: Branch, frequency: float) -> list[SteadyState]:
 def test_agrees_with_long_simulations_on_both_sides_of_each_fold(seed: int) -> None:
     structure, drive = seeded_case(seed)
     branch = frequency_response(
-        structure, drive, (0.12, 0.6), harmonics=48, step=0.04, stability=False
+        structure, drive, (0.12, 0.6), harmonics=96 if seed % 2 else 24, step=0.04, stability=False
     )
     assert branch.complete
     assert len(branch.folds) == 2
@@ -94,7 +94,7 @@ def test_agrees_with_long_simulations_on_both_sides_of_each_fold(seed: int) -> N
             for state in states:
                 size, shape = agreement(state)
                 assert size <= 1e-4
-                assert shape <= 3e-4
+                assert shape <= 1e-4
                 checked += 1
     assert checked == 6
 
@@ -184,7 +184,7 @@ def test_two_degrees_of_freedom_under_base_motion() -> None:
     state = steady_state(structure, SineDrive(0.5, "base"), 0.2, harmonics=48)
     size, shape = agreement(state)
     assert size <= 1e-4
-    assert shape <= 3e-4
+    assert shape <= 1e-4
 
 
 def test_an_oscillator_pushed_by_negative_damping_is_unstable() -> None:
