@@ -18,9 +18,11 @@ _OF_THE_MOMENT = frozenset(
         "power-law-damping",
         "asymmetric-damping",
         "cubic-stiffness",
+        "end-stop",
         "force-offset",
     }
 )
+_MEASURING_CHAIN = frozenset({"time-delay", "sensor-gain", "sensor-drift", "sensor-clipping"})
 _RELATIVE_STEP = 1e-6  # of central differences: their error is its square
 
 
@@ -109,15 +111,15 @@ def _sort(model: object) -> DeviceForces:
     for fitted in model.terms:
         order = fitted.shape.get("order", LINEAR_ORDERS.get(fitted.id))
         smooth = fitted.shape.get("transition_speed", 0.0) > 0.0
-        if fitted.term.acts == "output":
-            continue  # the measuring chain moves nothing
+        if fitted.id in _MEASURING_CHAIN:
+            continue  # it moves nothing
         if order is not None:
             linear.append((order, fitted.coefficient))
         elif fitted.id in _OF_THE_MOMENT or (fitted.id == "coulomb-friction" and smooth):
             bent.append(fitted)
         elif fitted.id == "coulomb-friction":
             friction += fitted.coefficient
-        elif fitted.id == "stribeck-friction":
+        elif fitted.id == "stribeck-friction" and not smooth and not fitted.shape.get("form"):
             stribeck.append((fitted.coefficient, fitted.shape["stribeck_velocity"]))
         else:
             raise InputError(

@@ -16,6 +16,7 @@ from numba import njit
 from models.simulation.elements import (
     ASYMMETRIC,
     CUBIC,
+    END_STOP,
     FRICTION,
     OFFSET,
     SMOOTH_FRICTION,
@@ -40,6 +41,8 @@ def curved_force(v, curves, start, stop):  # type: ignore[no-untyped-def] # noqa
         elif code == ASYMMETRIC:
             force += c * abs(v)
             slope += c if v >= 0.0 else -c
+        elif code == END_STOP:
+            continue
         elif p == 2.0:
             force += c * v * abs(v)
             slope += 2.0 * c * abs(v)
@@ -51,6 +54,21 @@ def curved_force(v, curves, start, stop):  # type: ignore[no-untyped-def] # noqa
 
 
 @njit(**_JIT)
+def stop_force(x0, x1, stiffness, gap, power):  # type: ignore[no-untyped-def] # noqa: ANN001, ANN201
+    """Return the mean force of an end stop from x0 to x1, whose work is exact, and its slope."""
+    side = 1.0 if gap >= 0.0 else -1.0
+    a, b = max(side * x0 - abs(gap), 0.0), max(side * x1 - abs(gap), 0.0)
+    if a == 0.0 and b == 0.0:
+        return 0.0, 0.0
+    move = side * (x1 - x0)
+    if abs(move) < 1e-6 * max(a, b):
+        depth = 0.5 * (a + b)
+        return side * stiffness * depth**power, 0.5 * stiffness * power * depth ** (power - 1.0)
+    mean = stiffness * (b ** (power + 1.0) - a ** (power + 1.0)) / ((power + 1.0) * move)
+    return side * mean, (stiffness * b**power - mean) / move
+
+
+@njit(**_JIT)
 def smooth_impulse(u, u0, x0, h, table, row, curves, start, stop):  # type: ignore[no-untyped-def] # noqa: ANN001, ANN201
     """Return impulse of the curves, of the position terms, and the slope of their sum."""
     mean = 0.5 * (u0 + u)
@@ -59,6 +77,11 @@ def smooth_impulse(u, u0, x0, h, table, row, curves, start, stop):  # type: igno
         force, rise = curved_force(mean, curves, start, stop)
         impulse, slope = h * force, 0.5 * h * rise
     position = h * table[row, OFFSET]
+    for i in range(start, stop):
+        if curves[i, 0] == END_STOP:
+            force, rise = stop_force(x0, x0 + h * mean, curves[i, 1], curves[i, 2], curves[i, 3])
+            position += h * force
+            slope += 0.5 * h * h * rise
     if table[row, CUBIC] != 0.0:
         # The mean of k x^3 whose work is exactly the change of potential energy.
         x1 = x0 + h * mean

@@ -12,7 +12,7 @@ from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 from models.flow.dimensionless import dean_per_speed
 from models.structure import Model
 
-POWER, SMOOTH_FRICTION, ASYMMETRIC = 0, 1, 2
+POWER, SMOOTH_FRICTION, ASYMMETRIC, END_STOP = 0, 1, 2, 3
 INERTANCE, VISCOUS, STIFFNESS, CUBIC, OFFSET, FRICTION, STRIBECK, STRIBECK_SPEED = range(8)
 BY_SPEED, BY_FREQUENCY = 0, 1
 
@@ -23,6 +23,7 @@ _COEFFICIENTS = {
     "cubic-stiffness": CUBIC,
     "force-offset": OFFSET,
 }
+_MEASURING_CHAIN = frozenset({"time-delay", "sensor-gain", "sensor-drift", "sensor-clipping"})
 _WHOLE_ORDERS = {0.0: STIFFNESS, 1.0: VISCOUS, 2.0: INERTANCE}
 
 
@@ -51,7 +52,7 @@ class Elements:
     curve_first: NDArray[np.int64]
     """(rows + 1,) first entry of each row in `curves`."""
     curves: Array
-    """(entries, 3) forces that bend with speed: code, coefficient, parameter."""
+    """(entries, 4) forces that bend with speed, and end stops: code, coefficient, parameters."""
     edges: Array
     """(rows,) upper end of each band: m/s, or Hz; infinite for the last."""
     coordinate: NDArray[np.int64]
@@ -72,7 +73,7 @@ def compile_elements(models: tuple[Model, ...]) -> Elements:
     """
     first, edges, coordinate = [0], [], []
     rows: list[Array] = []
-    curves: list[tuple[float, float, float]] = []
+    curves: list[tuple[float, float, float, float]] = []
     curve_first = [0]
     fractional: list[FractionalTerm] = []
     left_out: list[str] = []
@@ -83,7 +84,7 @@ def compile_elements(models: tuple[Model, ...]) -> Elements:
             row = np.zeros(8)
             row[STRIBECK_SPEED] = 1.0
             for fitted in band.terms:
-                if fitted.term.acts == "output":
+                if fitted.id in _MEASURING_CHAIN:
                     left_out.append(fitted.id)
                     continue
                 order = _place(fitted, row, curves)
@@ -97,7 +98,7 @@ def compile_elements(models: tuple[Model, ...]) -> Elements:
         np.array(first, dtype=np.int64),
         np.array(rows).reshape(-1, 8),
         np.array(curve_first, dtype=np.int64),
-        np.array(curves, dtype=np.float64).reshape(-1, 3),
+        np.array(curves, dtype=np.float64).reshape(-1, 4),
         np.array(edges, dtype=np.float64),
         np.array(coordinate, dtype=np.int64),
         tuple(fractional),
@@ -126,7 +127,7 @@ def _per_coordinate(model: SegmentedModel) -> float:
 
 
 def _place(
-    fitted: FittedTerm, row: Array, curves: list[tuple[float, float, float]]
+    fitted: FittedTerm, row: Array, curves: list[tuple[float, float, float, float]]
 ) -> float | None:
     """Add a term to its row or curve; return the order of one with memory."""
     value, shape = fitted.coefficient, fitted.shape
@@ -138,17 +139,26 @@ def _place(
             return order
         row[_WHOLE_ORDERS[order]] += value
     elif fitted.id == "quadratic-damping":
-        curves.append((POWER, value, 2.0))
+        curves.append((POWER, value, 2.0, 0.0))
     elif fitted.id == "power-law-damping":
-        curves.append((POWER, value, shape["exponent"]))
+        curves.append((POWER, value, shape["exponent"], 0.0))
     elif fitted.id == "asymmetric-damping":
-        curves.append((ASYMMETRIC, value, 0.0))
+        curves.append((ASYMMETRIC, value, 0.0, 0.0))
+    elif fitted.id == "end-stop":
+        # An entry for each end; the gap's sign says which.
+        for side in (1.0, -1.0):
+            if side * shape["side"] >= 0.0:
+                curves.append((END_STOP, value, side * shape["gap"], shape["exponent"]))
     elif fitted.id == "coulomb-friction":
         if shape["transition_speed"] > 0.0:
-            curves.append((SMOOTH_FRICTION, value, shape["transition_speed"]))
+            curves.append((SMOOTH_FRICTION, value, shape["transition_speed"], 0.0))
         else:
             row[FRICTION] += value
     elif fitted.id == "stribeck-friction":
+        if shape.get("form", 0.0) != 0.0 or shape.get("transition_speed", 0.0) != 0.0:
+            raise InputError(
+                "stribeck-friction", expected="of form 0 that jumps", found=f"{dict(shape)}"
+            )
         if row[STRIBECK] != 0.0:
             raise InputError("stribeck-friction", expected="there once", found="a second one")
         row[STRIBECK], row[STRIBECK_SPEED] = value, shape["stribeck_velocity"]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from models.checks import Array
 from models.simulation.elements import (
     CUBIC,
+    END_STOP,
     INERTANCE,
     OFFSET,
     STIFFNESS,
@@ -153,4 +154,10 @@ def _stored(
         kinetic += 0.5 * values[INERTANCE] * u * u
         potential += 0.5 * values[STIFFNESS] * s * s + 0.25 * values[CUBIC] * s**4
         potential += values[OFFSET] * s
+        for code, stiffness, gap, power in elements.curves[
+            elements.curve_first[row] : elements.curve_first[row + 1]
+        ]:
+            if code == END_STOP:
+                depth = max(np.sign(gap) * s - abs(gap), 0.0)
+                potential += stiffness * depth ** (power + 1.0) / (power + 1.0)
     return kinetic, potential

@@ -257,6 +257,7 @@ def every_effect() -> ForceModel:
             FittedTerm("asymmetric-damping", 0.03),
             FittedTerm("stiffness", 0.3),
             FittedTerm("cubic-stiffness", 0.5),
+            FittedTerm("end-stop", 3.0, {"gap": 0.3, "exponent": 1.5, "side": 0.0}),
             FittedTerm("force-offset", 0.05),
             FittedTerm("coulomb-friction", 0.1),
             FittedTerm("stribeck-friction", 0.05, {"stribeck_velocity": 0.1}),
@@ -379,6 +380,33 @@ def test_segmented_model_by_frequency() -> None:
         np.testing.assert_allclose(
             mixed.displacement[-500:], pure.displacement[-500:], atol=1e-3
         )
+
+
+def test_an_end_stop_bounces_a_free_mass_back() -> None:
+    # Free flight, a half sine on the spring of the stop, free flight back.
+    stop = ForceModel((FittedTerm("end-stop", 100.0, {"gap": 1.0, "exponent": 1.0, "side": 1.0}),))
+    structure = Structure([[1.0]], [[0.0]], [[0.0]], (Mount(stop),))
+    response = simulate(structure, step=1e-4, duration=3.0, velocity=1.0)
+    contact = np.pi / 10.0
+    assert response.displacement.max() == pytest.approx(1.1, abs=1e-6)
+    assert response.velocity[-1, 0] == pytest.approx(-1.0, abs=1e-7)
+    exact = 1.0 - (3.0 - 1.0 - contact)
+    assert response.displacement[-1, 0] == pytest.approx(exact, abs=1e-6)
+    assert abs(response.energy.residual) < 1e-10
+
+
+def test_effects_of_the_measuring_chain_move_nothing() -> None:
+    plain = ForceModel((FittedTerm("viscous-damping", 0.3),))
+    late = ForceModel((*plain.terms, FittedTerm("time-delay", 0.01)))
+    a, b = (
+        simulate(oscillator(1.0, 1.0, m), sine_load(1.0, 0.2), step=0.01, duration=5.0)
+        for m in (plain, late)
+    )
+    np.testing.assert_array_equal(a.displacement, b.displacement)
+    assert (a.left_out, b.left_out) == ((), ("time-delay",))
+    unknown = ForceModel((FittedTerm("series-compliance", 1e-6),))
+    with pytest.raises(InputError, match=r"term 'series-compliance' must be one that can be"):
+        simulate(oscillator(1.0, 1.0, unknown), step=0.1, duration=1.0)
 
 
 def test_turbulent_device_settles() -> None:
