@@ -21,7 +21,7 @@ from discover.selection.evidence import Scored, score
 from discover.triangle import Triangle, WindowRows, merge, triangle_of
 from models.checks import Array, Indices
 
-MIN_WINDOWS = 3
+MIN_WINDOWS = 2
 MAX_BANDS = 5
 
 

@@ -6,6 +6,9 @@ import numpy as np
 
 from models.checks import Array
 
+_GAPS = 3.0  # between harmonics, to either side of a line
+_OCTAVE = 0.3  # of a line's frequency, to either side of it
+_MEDIAN_EFFICIENCY = 0.6
 _FEWEST_BINS = 4.0  # between harmonics, for a gap to be there
 
 
@@ -68,14 +71,24 @@ def density_between_lines(
         return np.asarray((near @ density) / np.maximum(bins - gone, 1))
     clear = np.flatnonzero(distance > 1.5)
     clear = clear if clear.size >= 5 else np.flatnonzero(distance > 0.5)
-    width = max(1.5 * frequency, 4.0 * bin_width)
     result = np.empty(lines.size)
     for index, line in enumerate(lines):
+        width = max(_GAPS * frequency, _OCTAVE * line, 4.0 * bin_width)
         low, high = np.searchsorted(frequencies[clear], (line - width, line + width))
         low = max(min(low, clear.size - 5), 0)
         some = density[clear[low : max(high, low + 5)]]
         result[index] = float(np.median(some)) / _median_of_exponentials(some.size)
+        result[index] *= _doubt(some.size)
     return result
+
+
+def _doubt(bins: int) -> float:
+    """Return the mean of the true over the estimated variance, from the median of few bins.
+
+    A weight that is too large by chance would count as evidence.
+    """
+    freedom = 2.0 * bins * _MEDIAN_EFFICIENCY
+    return freedom / max(freedom - 2.0, 2.0)
 
 
 def _median_of_exponentials(count: int) -> float:

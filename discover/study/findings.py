@@ -33,7 +33,7 @@ def study_findings(
         result.append(
             Finding(
                 "note",
-                f"One band only: {reason} can't show a boundary. It takes at least three tests"
+                f"One band only: {reason} can't show a boundary. It takes at least two tests"
                 " on either side, at different frequencies.",
             )
         )
