@@ -8,17 +8,26 @@ from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return exp(-(v/v_s)^2) sign v."""
-    v = motion.velocity
-    return np.exp(-((v / shape["stribeck_velocity"]) ** 2)) * np.sign(v)
+    """Return exp(-(v/v_s)^2) sign v (`form` 0), exp(-|v|/v_s) sign v (1), or the rational fall
+    sign v / (1 + (v/v_s)^2) (2); with a transition speed, tanh stands for the sign.
+    """
+    v, speed = motion.velocity, shape["transition_speed"]
+    ratio = np.abs(v) / shape["stribeck_velocity"]
+    falls = (np.exp(-(ratio**2)), np.exp(-ratio), 1.0 / (1.0 + ratio**2))
+    direction = np.sign(v) if speed == 0.0 else np.tanh(v / speed)
+    return np.asarray(falls[int(shape["form"])] * direction)
 
 
 TERM = Term(
     "stribeck-friction",
     "N",
-    "f_s exp(-(v/v_s)^2) sign v, in addition to Coulomb friction",
+    "f_s times a fall with speed over v_s, times sign v, beside Coulomb friction",
     column,
-    parameters=(Parameter("stribeck_velocity", 0.01, 0.5, 0.1, "m/s", "speed", "log"),),
+    parameters=(
+        Parameter("stribeck_velocity", 0.01, 0.5, 0.1, "m/s", "speed", "log"),
+        Parameter("form", 0.0, 2.0, 0.0, ""),
+        Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
+    ),
     nonnegative=True,
     mistaken_for=("coulomb-friction", "hysteresis"),
 )

@@ -1,0 +1,121 @@
+"""Curves of a gap search for pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from discover.figure_data import EffectShape, GapCurves
+from discover.gap.accuracy import Misfit
+from discover.gap.search import Round
+from discover.naming.fit import whole_model
+from discover.naming.forces import model_force
+from discover.naming.rows import RecordRows
+from models.checks import Array
+from models.constitutive import FittedTerm, ForceModel, SegmentedModel
+
+_POINTS = 600
+_SHOWN = 400
+_CYCLES = 2.0
+_FOLLOWS = {
+    "inertia": ("acceleration", "m/s^2"),
+    "stiffness": ("displacement", "m"),
+    "cubic-stiffness": ("displacement", "m"),
+    "end-stop": ("displacement", "m"),
+    "hysteresis": ("displacement", "m"),
+    "backlash": ("displacement", "m"),
+    "position-dependent-friction": ("displacement", "m"),
+    "sensor-drift": ("time", "s"),
+    "thermal-drift": ("time", "s"),
+}
+
+
+def curves(rows: RecordRows, before: Array, after: Array, was: Misfit, now: Misfit) -> GapCurves:
+    """Return a record's curves, decimated; `before` and `after` are on the motion's grid."""
+    o = rows.observation
+    sine = o.kind == "sine"
+    stop = o.time.size
+    if sine:
+        step = float((o.time[-1] - o.time[0]) / (o.time.size - 1))
+        stop = min(stop, int(np.ceil(_CYCLES / (o.frequency * step))) + 1)
+    chosen = np.unique(np.linspace(0, stop - 1, min(_POINTS, stop)).astype(int))
+    return GapCurves(
+        file=o.file,
+        held_out=o.held_out,
+        frequency=o.frequency if sine else None,
+        amplitude=o.amplitude if sine else None,
+        time=o.time[chosen] - o.time[0],
+        displacement=o.at_samples(o.motion.displacement)[chosen],
+        velocity=o.at_samples(o.motion.velocity)[chosen],
+        force=o.measured[chosen],
+        before=o.at_samples(before)[chosen],
+        after=o.at_samples(after)[chosen],
+        noise_percent=now.noise_percent,
+        gap_before_percent=was.percent,
+        gap_after_percent=now.percent,
+    )
+
+
+def without(model: ForceModel, first: int, effect: str) -> ForceModel:
+    """Return the model without the terms of an effect that starts at index `first`."""
+    kept = [t for i, t in enumerate(model.terms) if i < first or t.id != effect]
+    return ForceModel(tuple(kept), model.name)
+
+
+def shape_of(
+    rows: Sequence[RecordRows], entry: Round, number: int, relative_error: float
+) -> EffectShape:
+    """Return the effect's force in the record where it is greatest, over what it follows.
+
+    Parameters
+    ----------
+    rows : sequence of RecordRows
+        Fitted records.
+    entry : Round
+        The round.
+    number : int
+        Its index.
+    relative_error : float
+        Standard error of the coefficient over the coefficient.
+    """
+    model = entry.stage.fit.model
+    rest = without(model, entry.first, entry.effect)
+
+    def change(r: RecordRows) -> Array:
+        o = r.observation
+        return model_force(o, whole_model(r, model)) - model_force(o, whole_model(r, rest))
+
+    sizes = [float(np.std(change(r)) / max(np.std(r.observation.measured), 1e-300)) for r in rows]
+    r = rows[int(np.argmax(sizes))]
+    o = r.observation
+    abscissa, unit = _FOLLOWS.get(entry.effect, ("velocity", "m/s"))
+    source = {
+        "velocity": o.motion.velocity,
+        "displacement": o.motion.displacement,
+        "acceleration": o.motion.acceleration,
+        "time": o.motion.time - o.motion.time[0],
+    }[abscissa]
+    along, force = o.at_samples(source), o.at_samples(change(r))
+    left = o.measured - o.at_samples(model_force(o, whole_model(r, rest)))
+    stop = along.size
+    if o.kind == "sine" and abscissa != "time":
+        step = float((o.time[-1] - o.time[0]) / (o.time.size - 1))
+        stop = min(stop, int(np.ceil(1.0 / (o.frequency * step))) + 1)
+    chosen = np.unique(np.linspace(0, stop - 1, min(_SHOWN, stop)).astype(int))
+    band = 1.96 * relative_error * np.abs(force[chosen])
+    return EffectShape(
+        number, entry.effect, abscissa, unit, along[chosen], force[chosen],
+        force[chosen] - band, force[chosen] + band, along[chosen], left[chosen],
+    )
+
+
+
+
+def added_to(whole: SegmentedModel, terms: Sequence[FittedTerm]) -> SegmentedModel:
+    """Return a model by bands with the same terms added in each."""
+    bands = tuple(
+        type(b)(b.lower, b.upper, ForceModel((*b.model.terms, *terms), b.model.name))
+        for b in whole.bands
+    )
+    return SegmentedModel(bands, whole.coordinate, whole.convention, whole.device, whole.name)

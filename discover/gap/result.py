@@ -1,0 +1,178 @@
+"""The answer of a gap search, and its documents."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from discover._version import __version__
+from discover.figure_data import GapFigureData
+from discover.gap.where import Place
+from discover.records import Finding
+from models.constitutive import FittedTerm, SegmentedModel
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class NamedEffect:
+    """One round."""
+
+    effect: str
+    """Id."""
+    parameters: dict[str, float]
+    """Shape, SI."""
+    coefficient: float
+    """In `unit`."""
+    interval: Interval
+    """95 %."""
+    unit: str
+    """SI."""
+    probability: float
+    """Of the name."""
+    alternatives: tuple[tuple[str, float], ...]
+    """What else it may be, most probable first."""
+    indistinguishable: tuple[str, ...]
+    """Of these, what the records can't tell from it."""
+    gap: tuple[float, float]
+    """Percent before and after, fitted records."""
+    unseen: tuple[float, float]
+    """Likewise, on records that were not fitted."""
+    dropped: tuple[str, ...]
+    """Earlier effects that it made superfluous."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "effect": self.effect,
+            "parameters": self.parameters,
+            "coefficient": self.coefficient,
+            "interval": list(self.interval),
+            "unit": self.unit,
+            "probability": self.probability,
+            "alternatives": [{"effect": e, "probability": p} for e, p in self.alternatives],
+            "not_distinguishable_from": list(self.indistinguishable),
+            "gap_before_percent": self.gap[0],
+            "gap_after_percent": self.gap[1],
+            "held_out_before_percent": self.unseen[0],
+            "held_out_after_percent": self.unseen[1],
+            "dropped": list(self.dropped),
+        }
+
+
+@dataclass(frozen=True)
+class RecordGap:
+    """One record before and after."""
+
+    file: str
+    """Name."""
+    held_out: bool
+    """Never fitted."""
+    noise: float
+    """Percent."""
+    before: float
+    """Percent."""
+    after: float
+    """Percent."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "file": self.file,
+            "held_out": self.held_out,
+            "noise_percent": self.noise,
+            "gap_before_percent": self.before,
+            "gap_after_percent": self.after,
+        }
+
+
+@dataclass(frozen=True)
+class Gap:
+    """The answer of a gap search."""
+
+    title: str
+    """The campaign's."""
+    content_hash: str
+    """The campaign's."""
+    seed: int
+    """As asked; the search itself draws nothing."""
+    baseline: tuple[FittedTerm, ...]
+    """The model's terms as it was held against the data."""
+    fitted: bool
+    """Its coefficients were fitted first."""
+    fixed: bool
+    """They were held throughout."""
+    gap_percent: float
+    """Before, pooled over the fitted records."""
+    held_out_gap_percent: float
+    """Before, over the records that were not fitted."""
+    noise_percent: float
+    """Pooled."""
+    where: tuple[Place, ...]
+    """By record."""
+    where_text: str
+    """In a sentence."""
+    rounds: tuple[NamedEffect, ...]
+    """In order."""
+    records: tuple[RecordGap, ...]
+    """In the campaign's order."""
+    verdict: str
+    """"agrees", "closed", "reduced" or "unexplained"."""
+    final_gap_percent: float
+    """After."""
+    final_held_out_gap_percent: float
+    """After."""
+    unexplained_percent: float
+    """What is left above the noise."""
+    shape: str
+    """What is left, in words; "" where nothing is."""
+    last: tuple[tuple[str, float], ...]
+    """The contest that ended the search, most probable first."""
+    leave_one_out: bool
+    """True where no record is marked: each was left out in turn."""
+    findings: tuple[Finding, ...]
+    """What to know."""
+    model: SegmentedModel
+    """The mended model."""
+    figure_data: GapFigureData
+    """For pictures."""
+
+    def _header(self, name: str) -> dict[str, Any]:
+        return {
+            "schema": f"inerter.{name}/1",
+            "version": __version__,
+            "seed": self.seed,
+            "campaign": {"title": self.title, "hash": self.content_hash},
+        }
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document ``gap.json``."""
+        result = {
+            **self._header("gap"),
+            "baseline": {
+                "terms": [t.to_dict() for t in self.baseline],
+                "fitted": self.fitted,
+                "fixed": self.fixed,
+            },
+            "gap_percent": self.gap_percent,
+            "noise_percent": self.noise_percent,
+            "held_out_gap_percent": self.held_out_gap_percent,
+            "held_out_by": "each record in turn" if self.leave_one_out else "marked records",
+            "where": [p.to_dict() for p in self.where],
+            "where_text": self.where_text,
+            "rounds": [r.to_dict() for r in self.rounds],
+            "records": [r.to_dict() for r in self.records],
+            "verdict": self.verdict,
+            "final_gap_percent": self.final_gap_percent,
+            "final_held_out_gap_percent": self.final_held_out_gap_percent,
+            "unexplained_percent": self.unexplained_percent,
+            "contest": [{"effect": e, "probability": p} for e, p in self.last],
+            "findings": [f.to_dict() for f in self.findings],
+        }
+        if self.shape:
+            result["shape"] = self.shape
+        return result
+
+    def model_dict(self) -> dict[str, Any]:
+        """Return the document ``model.json`` of the mended model."""
+        return {**self._header("model"), **self.model.to_dict()}

@@ -1,0 +1,273 @@
+"""The gap search from a campaign and a model to the answer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from discover.figure_data import GapFigureData
+from discover.gap.accuracy import pooled
+from discover.gap.baseline import Baseline, prepare_baseline
+from discover.gap.figures import added_to, curves, shape_of
+from discover.gap.result import Gap, NamedEffect, RecordGap
+from discover.gap.search import Round, Search, Stage, search
+from discover.gap.where import places, where_in_words
+from discover.motion_fit import observe
+from discover.naming.candidates import EFFECTS
+from discover.naming.contest import AGREES, UNKNOWN, Contest
+from discover.naming.fit import whole_model
+from discover.naming.forces import model_force
+from discover.records import Campaign, Finding
+from models.checks import InputError, one_of
+from models.constitutive import Band, ForceModel, SegmentedModel
+
+_STATED = 0.97  # of the probability that the alternatives add up to
+_LEAST_STATED = 0.02
+_MOST_STATED = 6
+_EQUAL = 0.2  # of the named effect's probability: then they can't be told apart
+_CLOSED = 1.15  # of the noise floor
+
+
+def close_gap(
+    campaign: Campaign,
+    model: str | ForceModel | SegmentedModel,
+    *,
+    fixed: bool = False,
+    effects: Sequence[str] | None = None,
+    seed: int = 0,
+    jobs: int = 1,
+) -> Gap:
+    """Find where model and measurement disagree, name what is missing, add it, judge.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Records; those held out are only predicted. Where none is marked, each is left out in
+        turn.
+    model : str, ForceModel or SegmentedModel
+        ``fit:TERM,TERM,...`` (coefficients fitted first) or a model.
+    fixed : bool
+        Hold the model's coefficients instead of refitting them with each effect.
+    effects : sequence of str, optional
+        Ids that may be named; the whole catalogue where not given.
+    seed : int
+        Kept in the document; the search draws nothing at random.
+    jobs : int
+        Threads for reading the records.
+
+    Returns
+    -------
+    Gap
+        With ``to_dict()``, the document ``gap.json``.
+
+    Raises
+    ------
+    InputError
+        Where no record may be fitted, or for an unknown effect.
+    """
+    if not campaign.fitted:
+        raise InputError(
+            "records", expected="at least one that is not held out", found="none",
+            where=campaign.source,
+        )
+    chosen = EFFECTS if effects is None else tuple(effects)
+    for name in chosen:
+        one_of("effect", name, EFFECTS, where="effects")
+    observations = _observe(campaign, jobs)
+    baseline = prepare_baseline(observations, model, fixed=fixed)
+    found = search(baseline, chosen)
+    return _answer(campaign, baseline, found, seed)
+
+
+def _observe(campaign: Campaign, jobs: int):  # type: ignore[no-untyped-def]
+    if jobs <= 1 or len(campaign.records) < 2:
+        return tuple(observe(r) for r in campaign.records)
+    from joblib import Parallel, delayed
+
+    return tuple(Parallel(n_jobs=jobs, prefer="threads")(delayed(observe)(r) for r in campaign.records))
+
+
+def _seen(baseline: Baseline, stage: Stage) -> float:
+    return pooled(
+        [m for r, m in zip(baseline.rows, stage.misfits, strict=True) if not r.observation.held_out]
+    )
+
+
+def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) -> Gap:
+    rows, start, final = baseline.rows, found.baseline, found.final
+    seen = [i for i, r in enumerate(rows) if not r.observation.held_out]
+    noise = pooled([final.misfits[i] for i in seen], noise=True)
+    stages = [start, *(r.stage for r in found.rounds)]
+    rounds = tuple(
+        _named(baseline, entry, stages[i], stages[i + 1]) for i, entry in enumerate(found.rounds)
+    )
+    located = places(rows, start.fit.model)
+    left = places(rows, final.fit.model)
+    final_gap = _seen(baseline, final)
+    verdict = _verdict(found, final_gap, noise)
+    unexplained = float(np.sqrt(max(final_gap**2 - noise**2, 0.0)))
+    shape = "" if verdict in ("agrees", "closed") else where_in_words(left)
+    records = tuple(
+        RecordGap(
+            r.observation.file, r.observation.held_out, now.noise_percent, was.percent, now.percent
+        )
+        for r, was, now in zip(rows, start.misfits, final.misfits, strict=True)
+    )
+    return Gap(
+        title=campaign.title,
+        content_hash=campaign.content_hash,
+        seed=seed,
+        baseline=baseline.terms,
+        fitted=baseline.fitted,
+        fixed=baseline.fixed,
+        gap_percent=_seen(baseline, start),
+        held_out_gap_percent=pooled(start.unseen),
+        noise_percent=noise,
+        where=located,
+        where_text=where_in_words(located),
+        rounds=rounds,
+        records=records,
+        verdict=verdict,
+        final_gap_percent=final_gap,
+        final_held_out_gap_percent=pooled(final.unseen),
+        unexplained_percent=unexplained,
+        shape=shape,
+        last=_stated(found.last, ""),
+        leave_one_out=not campaign.held_out,
+        findings=_findings(baseline, found, where_in_words(located)),
+        model=_mended(campaign, baseline, found),
+        figure_data=_figures(baseline, found, rounds),
+    )
+
+
+def _verdict(found: Search, gap: float, noise: float) -> str:
+    ended = found.last.ranked[0][0]
+    if not found.rounds:
+        return "agrees" if ended == AGREES else "unexplained"
+    if ended == AGREES or gap <= _CLOSED * noise:
+        return "closed"
+    return "reduced"
+
+
+def _stated(contest: Contest, name: str) -> tuple[tuple[str, float], ...]:
+    """Return what else it may be, until nearly all of the probability is stated."""
+    stated, total = [], contest.probabilities.get(name, 0.0)
+    for other, probability in contest.ranked:
+        if other == name:
+            continue
+        if total > _STATED or probability < _LEAST_STATED or len(stated) >= _MOST_STATED:
+            break
+        stated.append((other, probability))
+        total += probability
+    return tuple(stated)
+
+
+def _named(baseline: Baseline, entry: Round, before: Stage, after: Stage) -> NamedEffect:
+    fit = entry.stage.fit
+    index = min(entry.first, len(fit.model.terms) - 1)
+    term = fit.model.terms[index]
+    error = _standard_error(entry)
+    probability = float(entry.contest.probabilities[entry.effect])
+    alternatives = _stated(entry.contest, entry.effect)
+    return NamedEffect(
+        effect=entry.effect,
+        parameters=dict(term.shape),
+        coefficient=term.coefficient,
+        interval=(term.coefficient - 1.96 * error, term.coefficient + 1.96 * error),
+        unit=term.unit,
+        probability=probability,
+        alternatives=alternatives,
+        indistinguishable=tuple(
+            e for e, p in alternatives if p > _EQUAL * probability and e not in (AGREES, UNKNOWN)
+        ),
+        gap=(_seen(baseline, before), _seen(baseline, after)),
+        unseen=(pooled(before.unseen), pooled(after.unseen)),
+        dropped=entry.dropped,
+    )
+
+
+def _standard_error(entry: Round) -> float:
+    """Return the coefficient's standard error, N per unit, raised where more than noise is left."""
+    fit = entry.stage.fit
+    for k, parameter in enumerate(fit.parameters):
+        if parameter.term == entry.first and parameter.shape is None:
+            raised = max(fit.chi2 / max(fit.residual.size - len(fit.parameters), 1), 1.0)
+            return float(np.sqrt(max(fit.covariance[k, k], 0.0) * raised))
+    return 0.0
+
+
+def _mended(campaign: Campaign, baseline: Baseline, found: Search) -> SegmentedModel:
+    terms = found.final.fit.model.terms
+    if isinstance(baseline.whole, SegmentedModel) and len(baseline.whole.bands) > 1:
+        return added_to(baseline.whole, terms)
+    held = baseline.terms if baseline.fixed else ()
+    model = ForceModel((*held, *terms), "mended")
+    return SegmentedModel(
+        (Band(None, None, model),), "speed", "paper", campaign.device, "mended"
+    )
+
+
+def _figures(
+    baseline: Baseline, found: Search, rounds: Sequence[NamedEffect]
+) -> GapFigureData:
+    rows = baseline.rows
+    before, after = found.baseline.fit.model, found.final.fit.model
+    drawn = tuple(
+        curves(
+            r,
+            model_force(r.observation, whole_model(r, before)),
+            model_force(r.observation, whole_model(r, after)),
+            was,
+            now,
+        )
+        for r, was, now in zip(rows, found.baseline.misfits, found.final.misfits, strict=True)
+    )
+    fitted = [r for r in rows if not r.observation.held_out]
+    shapes = tuple(
+        shape_of(fitted, entry, i, _relative(named))
+        for i, (entry, named) in enumerate(zip(found.rounds, rounds, strict=True))
+    )
+    from discover.gap.where import surface
+
+    return GapFigureData(drawn, shapes, surface(rows, before))
+
+
+def _relative(named: NamedEffect) -> float:
+    if not named.coefficient:
+        return 0.0
+    return (named.interval[1] - named.interval[0]) / 3.92 / abs(named.coefficient)
+
+
+def _findings(baseline: Baseline, found: Search, text: str) -> tuple[Finding, ...]:
+    result = [Finding("note", text)]
+    for r in baseline.rows:
+        if r.observation.phase_fitted:
+            result.append(
+                Finding(
+                    "note",
+                    "has no displacement: the motion is a pure sine of the labelled frequency and"
+                    " amplitude, its phase fitted to the force.",
+                    r.observation.file,
+                )
+            )
+    for entry in found.rounds:
+        for name in entry.dropped:
+            result.append(
+                Finding("note", f"{name}, named in an earlier round, was made superfluous by"
+                        f" {entry.effect} and dropped.")
+            )
+    ended = found.last.ranked[0]
+    if ended[0] == UNKNOWN:
+        result.append(
+            Finding(
+                "warning",
+                f"What is left is more than noise, and no effect of the catalogue explains it"
+                f" (probability {ended[1]:.2f} that it is none of them).",
+            )
+        )
+    if not baseline.fixed and not baseline.fitted:
+        result.append(
+            Finding("note", "The given coefficients are refitted with each effect; --fixed holds them.")
+        )
+    return tuple(result)

@@ -1,0 +1,186 @@
+"""Rounds of the search: name, add, refit, judge; drop what became superfluous; stop."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from discover.gap.accuracy import Misfit, misfit
+from discover.gap.baseline import Baseline
+from discover.naming.contest import AGREES, UNKNOWN, Contest, run_contest
+from discover.naming.fit import (
+    ModelFit,
+    fit_model,
+    free_parameters,
+    value_of,
+    whole_model,
+    with_values,
+)
+from discover.naming.forces import model_force
+from discover.naming.refine import extended, refine
+from discover.naming.rows import RecordRows
+from models.checks import Array
+from models.constitutive import ForceModel
+
+MOST_ROUNDS = 6
+_SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
+_TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A model on all records: before the first round, or after one."""
+
+    fit: ModelFit
+    """On the fitted records."""
+    misfits: tuple[Misfit, ...]
+    """Of every record, by the fitted model."""
+    unseen: tuple[Misfit, ...]
+    """Of the records that were not fitted: the held-out ones, or each left out in turn."""
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round."""
+
+    effect: str
+    """What was added."""
+    first: int
+    """Index of its first term in the model."""
+    contest: Contest
+    """That named it."""
+    stage: Stage
+    """After it."""
+    dropped: tuple[str, ...] = ()
+    """Effects of earlier rounds that it made superfluous."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """The whole search."""
+
+    baseline: Stage
+    """Before."""
+    rounds: tuple[Round, ...]
+    """In order."""
+    last: Contest
+    """That ended it."""
+
+    @property
+    def final(self) -> Stage:
+        """The last stage."""
+        return self.rounds[-1].stage if self.rounds else self.baseline
+
+
+def stage(rows: Sequence[RecordRows], fit: ModelFit) -> Stage:
+    """Return what a fitted model makes of every record."""
+    found = tuple(_misfit(r, fit.model) for r in rows)
+    held = tuple(m for r, m in zip(rows, found, strict=True) if r.observation.held_out)
+    return Stage(fit, found, held or _left_out(rows, fit))
+
+
+def _misfit(rows: RecordRows, model: ForceModel) -> Misfit:
+    return misfit(rows.observation, model_force(rows.observation, whole_model(rows, model)))
+
+
+def _left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
+    """Return each record's misfit by the model fitted to the others, to first order."""
+    if not fit.parameters or len(rows) < 2:
+        return tuple(_misfit(r, fit.model) for r in rows)
+    values = np.array([value_of(fit.model, p) for p in fit.parameters])
+    result, start = [], 0
+    for r in rows:
+        span = slice(start, start + r.target.size)
+        start = span.stop
+        own = fit.tangents[:, span]
+        rest = np.linalg.pinv(
+            fit.tangents @ fit.tangents.T - own @ own.T, rcond=1e-12, hermitian=True
+        )
+        shift: Array = -rest @ (own @ fit.residual[span])
+        limit = 0.5 * np.abs(values)
+        shape = np.array([p.shape is not None for p in fit.parameters])
+        shift = np.where(shape, np.clip(shift, -limit, limit), shift)
+        result.append(_misfit(r, with_values(fit.model, fit.parameters, values + shift)))
+    return tuple(result)
+
+
+def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUNDS) -> Search:
+    """Return the rounds of naming beside a baseline.
+
+    Parameters
+    ----------
+    baseline : Baseline
+        Where to start.
+    effects : sequence of str
+        Ids of the catalogue that may be named.
+    most : int
+        Rounds at most.
+    """
+    rows = baseline.rows
+    fitted = [r for r in rows if not r.observation.held_out]
+    fixed = fit_model(fitted, baseline.model, ())
+    start = stage(rows, fixed)
+    fit = fit_model(fitted, baseline.model, free_parameters(baseline.model))
+    names: list[tuple[str, int]] = []
+    rounds: list[Round] = []
+    tried: set[str] = set()
+    while True:
+        present = {t.id for t in fit.model.terms}
+        open_effects = [e for e in effects if e not in present and e not in tried]
+        contest, fits = _contest(fitted, fit, open_effects)
+        name = contest.ranked[0][0]
+        if name in (AGREES, UNKNOWN) or len(rounds) >= most:
+            return Search(start, tuple(rounds), contest)
+        mended = fits.get(name) or _mended(fitted, fit, contest, name)
+        gained = fit.chi2 - mended.chi2
+        if gained < max(_TOO_LITTLE * contest.excess, 0.0):
+            return Search(start, tuple(rounds), contest)
+        first = len(fit.model.terms)
+        mended, dropped, names = _without_superfluous(fitted, mended, names)
+        first -= len(dropped)
+        tried |= set(dropped)
+        names.append((name, first))
+        fit = mended
+        rounds.append(Round(name, first, contest, stage(rows, fit), dropped))
+
+
+def _contest(
+    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str]
+) -> tuple[Contest, dict[str, ModelFit]]:
+    reversal = next(
+        (
+            t.shape["transition_speed"]
+            for t in (*fit.model.terms, *(t for r in rows for t in r.held))
+            if t.id == "coulomb-friction"
+        ),
+        0.0,
+    )
+    contest = run_contest(rows, fit, effects, reversal=reversal)
+    return refine(rows, fit, contest, effects)
+
+
+def _mended(
+    rows: Sequence[RecordRows], fit: ModelFit, contest: Contest, name: str
+) -> ModelFit:
+    entry = next(e for e in contest.entries if e.effects and e.effects[0] == name)
+    model = extended(fit.model, entry)
+    return fit_model(rows, model, free_parameters(model))
+
+
+def _without_superfluous(
+    rows: Sequence[RecordRows], fit: ModelFit, names: list[tuple[str, int]]
+) -> tuple[ModelFit, tuple[str, ...], list[tuple[str, int]]]:
+    """Return the fit without earlier effects that the newest made worth next to nothing."""
+    dropped: list[str] = []
+    kept = list(names)
+    for name, first in names[::-1]:
+        terms = [t for i, t in enumerate(fit.model.terms) if i != first]
+        less = ForceModel(tuple(terms), fit.model.name)
+        trial = fit_model(rows, less, free_parameters(less), iterations=4)
+        if trial.chi2 - fit.chi2 < 2.0 * _SUPERFLUOUS:
+            fit = trial
+            dropped.append(name)
+            kept = [(n, f - (f > first)) for n, f in kept if n != name]
+    return fit, tuple(dropped), kept

@@ -1,0 +1,226 @@
+"""What is tried for each effect: a few shapes of each, scaled by what the campaign covers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from discover.motion_fit import Observation
+from models.terms import TERMS
+
+EFFECTS = tuple(sorted(TERMS))
+
+
+@dataclass(frozen=True)
+class Scales:
+    """What a campaign covers."""
+
+    speed: float
+    """m/s, greatest amplitude."""
+    displacement: float
+    """m, likewise."""
+    force: float
+    """N, greatest measured."""
+    peaks: tuple[float, ...]
+    """N, of every record, rising."""
+    duration: float
+    """s, longest record."""
+    omega: float
+    """rad/s, highest."""
+    reversal: float = 0.0
+    """m/s over which the baseline's friction reverses."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One term of a variant."""
+
+    id: str
+    """Of the term."""
+    shape: Mapping[str, float] = field(default_factory=dict)
+    """Its shape."""
+    probe: float = 1.0
+    """Coefficient at which a change of input or output is tried."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One shape of an effect: one term or several of the same id, fitted together."""
+
+    effect: str
+    """Id."""
+    parts: tuple[Part, ...]
+    """At least one."""
+    shapes: int
+    """Number of shape parameters that were chosen."""
+
+
+def scales_of(observations: Sequence[Observation], reversal: float = 0.0) -> Scales:
+    """Return what the records cover."""
+    peaks = sorted(float(np.abs(o.measured).max()) for o in observations)
+    return Scales(
+        speed=max(float(np.abs(o.motion.velocity).max()) for o in observations),
+        displacement=max(float(np.abs(o.motion.displacement).max()) for o in observations),
+        force=peaks[-1],
+        peaks=tuple(peaks),
+        duration=max(float(o.time[-1] - o.time[0]) for o in observations),
+        omega=max(float(w.frequency) for o in observations for w in o.windows) * 2.0 * np.pi,
+        reversal=reversal,
+    )
+
+
+def _one(effect: str, shapes: int = 0, probe: float = 1.0, **shape: float) -> Variant:
+    return Variant(effect, (Part(effect, shape, probe),), shapes)
+
+
+def variants(effect: str, scales: Scales) -> list[Variant]:
+    """Return the shapes that are tried for an effect.
+
+    Raises
+    ------
+    KeyError
+        For an effect that is not in the catalogue.
+    """
+    maker = _MAKERS.get(effect)
+    return [_one(effect)] if maker is None else maker(scales)
+
+
+def _power(scales: Scales) -> list[Variant]:
+    grid = [0.25, 0.35, 0.5, 0.65, 0.8, 1.2, 1.35, 1.5, 1.65, 1.75, 2.3, 2.6, 3.0]
+    return [_one("power-law-damping", 1, exponent=p) for p in grid]
+
+
+def _coulomb(scales: Scales) -> list[Variant]:
+    speeds = [0.0, *np.geomspace(0.002, 0.25, 7) * scales.speed]
+    return [_one("coulomb-friction", 1, transition_speed=float(s)) for s in speeds]
+
+
+def _fractional(scales: Scales) -> list[Variant]:
+    grid = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9]
+    return [_one("fractional-derivative", 1, order=a) for a in grid]
+
+
+def _stribeck(scales: Scales) -> list[Variant]:
+    return [
+        _one(
+            "stribeck-friction", 1, stribeck_velocity=float(s), form=float(form),
+            transition_speed=scales.reversal,
+        )
+        for s in np.geomspace(0.004, 0.5, 9) * scales.speed
+        for form in (0, 1, 2)
+    ]
+
+
+def _delay(scales: Scales) -> list[Variant]:
+    return [_one("time-delay", 0, probe=0.02 / scales.omega)]
+
+
+def _compliance(scales: Scales) -> list[Variant]:
+    stiffest = scales.force / scales.displacement
+    return [
+        _one("series-compliance", 1, probe=float(c), loss=loss)
+        for c in np.array([0.003, 0.02, 0.06, 0.15]) / stiffest
+        for loss in (0.05, 0.3)
+    ]
+
+
+def _stop(scales: Scales) -> list[Variant]:
+    return [
+        _one("end-stop", 1, gap=float(g * scales.displacement), exponent=p, side=s)
+        for g in (0.3, 0.45, 0.55, 0.65, 0.72, 0.78, 0.84, 0.89, 0.93, 0.96)
+        for p in (1.0, 1.5, 2.0)
+        for s in (0.0, 1.0, -1.0)
+    ]
+
+
+def _backlash(scales: Scales) -> list[Variant]:
+    return [
+        _one("backlash", 1, gap=float(g * scales.displacement), stiffness=k)
+        for g in np.geomspace(0.002, 0.4, 10)
+        for k in (0.7, 2.0)
+    ]
+
+
+def _cavitation(scales: Scales) -> list[Variant]:
+    return [
+        _one(
+            "cavitation", 1, limit=float(c * scales.force), softness=soft * c * scales.force,
+            refill=refill, side=s,
+        )
+        for c in (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.92)
+        for soft, refill in ((0.0, 0.0), (0.06, 0.0), (0.2, 0.0), (0.0, 0.1), (0.0, 0.5))
+        for s in (1.0, -1.0)
+    ]
+
+
+def _hysteresis(scales: Scales) -> list[Variant]:
+    return [
+        _one("hysteresis", 1, yield_displacement=float(r), form=float(form))
+        for r in np.geomspace(0.004, 1.5, 12) * scales.displacement
+        for form in (0, 1, 2)
+    ]
+
+
+def _along(scales: Scales) -> list[Variant]:
+    name, speed = "position-dependent-friction", scales.reversal
+    one, two = (Part(name, {"power": p, "transition_speed": speed}) for p in (1.0, 2.0))
+    return [Variant(name, (one,), 0), Variant(name, (two,), 0), Variant(name, (one, two), 0)]
+
+
+def _thermal(scales: Scales) -> list[Variant]:
+    return [
+        _one("thermal-drift", 1, warming_time=float(t))
+        for t in (0.0, *np.geomspace(0.02, 1.0, 5) * scales.duration)
+    ]
+
+
+def _drift(scales: Scales) -> list[Variant]:
+    return [
+        _one("sensor-drift", 1, settling_time=float(t))
+        for t in (0.0, *np.geomspace(0.02, 1.0, 5) * scales.duration)
+    ]
+
+
+def _gain(scales: Scales) -> list[Variant]:
+    peaks = np.array(scales.peaks)
+    between = np.sqrt(peaks[1:] * peaks[:-1])[peaks[1:] > 1.05 * peaks[:-1]]
+    chosen = between[:: max(between.size // 16, 1)]
+    uniform = [_one("sensor-gain", 0, 1e-3, threshold=0.0, side=1.0)]
+    return uniform + [_one("sensor-gain", 1, 1e-3, threshold=float(t), side=1.0) for t in chosen]
+
+
+def _clipping(scales: Scales) -> list[Variant]:
+    return [
+        _one(
+            "sensor-clipping", 1, limit=float(c * scales.force),
+            softness=soft * c * scales.force, side=0.0,
+        )
+        for c in (0.3, 0.4, 0.5, 0.6, 0.7, 0.78, 0.85, 0.9, 0.95, 0.98)
+        for soft in (0.0, 0.05, 0.15)
+    ]
+
+
+def _cubic(scales: Scales) -> list[Variant]:
+    return [_one("cubic-stiffness")]
+
+
+_MAKERS = {
+    "power-law-damping": _power,
+    "coulomb-friction": _coulomb,
+    "fractional-derivative": _fractional,
+    "stribeck-friction": _stribeck,
+    "time-delay": _delay,
+    "series-compliance": _compliance,
+    "end-stop": _stop,
+    "backlash": _backlash,
+    "cavitation": _cavitation,
+    "hysteresis": _hysteresis,
+    "position-dependent-friction": _along,
+    "thermal-drift": _thermal,
+    "sensor-drift": _drift,
+    "sensor-gain": _gain,
+    "sensor-clipping": _clipping,
+    "cubic-stiffness": _cubic,
+}

@@ -1,0 +1,301 @@
+"""The contest of effects: each fitted jointly with the model, weighed, turned into probabilities.
+
+The evidence of a hypothesis falls with its misfit above the noise. Near the noise that is half of
+chi-square; far above it only ratios count (a Student's t for the error of the model), since no
+formula follows a measured effect exactly. "Agrees" is the model as it is; "unknown" is a misfit
+that some flexible shape would explain and no entry of the catalogue does; pairs of effects stand
+for the case that two are missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import logsumexp
+
+from discover.naming.candidates import Part, Variant, scales_of, variants
+from discover.naming.fit import ModelFit, whole_model
+from discover.naming.forces import added_force
+from discover.naming.rows import RecordRows
+from models.checks import Array
+from models.constitutive import ForceModel
+from models.terms import TERMS
+
+AGREES = "agrees"
+UNKNOWN = "unknown"
+_NOISE_DEVIATIONS = 4.0  # of chi-square, within which the misfit is the noise's
+_NOISE_UNCERTAINTY = 0.06  # of the noise's variance, over all rows
+_TEMPERATURE = 3.0
+_PRIOR_AGREES = 4.0
+_PRIOR_PAIR = -6.0
+_UNKNOWN_SHARE = 0.25
+_UNKNOWN_COST = 18.0
+_PAIR_CANDIDATES = 6
+_COLLINEAR = 1e-6
+_REVERSALS = (0.4, 2.5)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A hypothesis: what is added, and how well it then fits."""
+
+    effects: tuple[str, ...]
+    """Ids that are added; the first is the stronger. Empty for the model as it is."""
+    variants: tuple[Variant, ...]
+    """Their shapes."""
+    coefficients: tuple[tuple[float, ...], ...]
+    """Of each variant's parts."""
+    chi2: float
+    """Sum of squared whitened misfits."""
+    log_evidence: float
+    """Nats."""
+
+
+@dataclass(frozen=True)
+class Contest:
+    """What the contest of one round says."""
+
+    entries: tuple[Entry, ...]
+    """Best first; the model as it is among them."""
+    probabilities: Mapping[str, float]
+    """Of every effect, "agrees" and "unknown"; they add up to one."""
+    excess: float
+    """Chi-square of the model as it is, above what noise explains."""
+    rows: int
+    """Number of rows."""
+    noise: float
+    """Chi-square that noise explains."""
+
+    @property
+    def ranked(self) -> list[tuple[str, float]]:
+        """Names and probabilities, most probable first."""
+        return sorted(self.probabilities.items(), key=lambda item: -item[1])
+
+    def best(self, effect: str) -> Entry | None:
+        """Return the best hypothesis that adds `effect` alone."""
+        return next((e for e in self.entries if e.effects == (effect,)), None)
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Whitened columns of all variants, freed of what the model's own parameters explain."""
+
+    variants: tuple[Variant, ...]
+    owner: Array
+    matrix: Array
+
+
+def candidate_columns(
+    rows: Sequence[RecordRows], model: ForceModel, chosen: Sequence[Variant]
+) -> Array:
+    """Return the whitened rows of every part of every variant, (C, R)."""
+    parts = [p for v in chosen for p in v.parts]
+    blocks = []
+    for r in rows:
+        forces = np.stack(
+            [
+                added_force(
+                    r.observation, whole_model(r, model), TERMS[p.id], TERMS[p.id].shape(p.shape), p.probe
+                )
+                for p in parts
+            ]
+        )
+        blocks.append(r.project(forces))
+    return np.concatenate(blocks, axis=1)
+
+
+def _reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
+    """Return rows by which the curve along which friction reverses may differ from tanh."""
+    friction = next((t for t in model.terms if t.id == "coulomb-friction"), None)
+    size = sum(r.target.size for r in rows)
+    if friction is None or friction.shape["transition_speed"] == 0.0:
+        return np.zeros((0, size))
+    speed = friction.shape["transition_speed"]
+    blocks = []
+    for r in rows:
+        v = r.observation.motion.velocity
+        own = np.tanh(v / speed)
+        curves = [np.tanh(v / (s * speed)) - own for s in _REVERSALS]
+        curves.append(v / np.hypot(v, speed) - own)
+        blocks.append(r.project(friction.coefficient * np.stack(curves)))
+    return np.concatenate(blocks, axis=1)
+
+
+def _freed(columns: Array, tangents: Array) -> Array:
+    scale = np.linalg.norm(tangents, axis=1)
+    used = tangents[scale > 0.0] / scale[scale > 0.0, None]
+    if not used.size:
+        return columns
+    left, values, right = np.linalg.svd(used, full_matrices=False)
+    basis = right[values > 1e-9 * values[0]]
+    return np.asarray(columns - (columns @ basis.T) @ basis)
+
+
+def cost(excess: float, informative: float) -> float:
+    """Return minus two times the log likelihood of a misfit above the noise."""
+    return excess if excess <= 0.0 else informative * float(np.log1p(excess / informative))
+
+
+def run_contest(
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    effects: Sequence[str],
+    *,
+    reversal: float = 0.0,
+    user: Sequence[Variant] = (),
+) -> Contest:
+    """Weigh every effect beside a fitted model.
+
+    Parameters
+    ----------
+    rows : sequence of RecordRows
+        Records that are fitted.
+    fit : ModelFit
+        The model, fitted to them, with what it may still change.
+    effects : sequence of str
+        Ids to weigh.
+    reversal : float
+        m/s over which the model's friction reverses.
+    user : sequence of Variant
+        Further variants.
+    """
+    scales = scales_of([r.observation for r in rows], reversal)
+    chosen = [v for e in effects for v in variants(e, scales)] + list(user)
+    informative = sum(r.informative for r in rows)
+    size = fit.residual.size
+    dof = size - len(fit.parameters)
+    noise = dof + _NOISE_DEVIATIONS * np.sqrt(2.0 * dof) * 0.5 + _NOISE_UNCERTAINTY * dof
+    raw = candidate_columns(rows, fit.model, chosen)
+    tangents = np.concatenate([fit.tangents, _reversal_doubt(rows, fit.model)])
+    freed = _freed(raw, tangents)
+    target = _freed(fit.residual[None], tangents)[0]
+    chi2 = float(target @ target)
+
+    def evidence(chi2: float, parameters: int) -> float:
+        return -0.5 * cost(chi2 - noise, informative) - 0.5 * parameters * np.log(size)
+
+    nothing = Entry((), (), (), chi2, evidence(chi2, 0))
+    entries = [nothing]
+    start = 0
+    spans: list[slice] = []
+    for v in chosen:
+        span = slice(start, start + len(v.parts))
+        start = span.stop
+        spans.append(span)
+        entry = _single(v, raw[span], freed[span], target, chi2, evidence)
+        if entry is not None:
+            entries.append(entry)
+    best: dict[str, Entry] = {}
+    for e in entries[1:]:
+        if e.effects[0] not in best or e.log_evidence > best[e.effects[0]].log_evidence:
+            best[e.effects[0]] = e
+    ranked = sorted(best.values(), key=lambda e: -e.log_evidence)
+    pairs: list[Entry] = []
+    if ranked and ranked[0].chi2 > noise + 20.0:
+        for lead in ranked[:_PAIR_CANDIDATES]:
+            pairs += _pairs(lead, chosen, spans, freed, target, chi2, evidence)
+    everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
+    probabilities = _probabilities(everything, effects, chi2 - noise, informative)
+    return Contest(tuple(everything), probabilities, chi2 - noise, size, noise)
+
+
+def _single(v, raw, freed, target, chi2, evidence):  # type: ignore[no-untyped-def]
+    gram = freed @ freed.T
+    power = np.sum(raw**2, axis=1)
+    if np.any(np.diagonal(gram) <= _COLLINEAR * power) or not np.all(np.isfinite(gram)):
+        return None
+    solution = np.linalg.lstsq(gram, freed @ target, rcond=1e-10)[0]
+    if TERMS[v.effect].nonnegative and solution[0] <= 0.0:
+        return None
+    now = chi2 - float(solution @ (freed @ target))
+    value = evidence(now, len(v.parts) + v.shapes)
+    return Entry((v.effect,), (v,), (tuple(solution),), now, value)
+
+
+def _pairs(lead, chosen, spans, freed, target, chi2, evidence):  # type: ignore[no-untyped-def]
+    """Return the best pair of `lead` with every other effect."""
+    index = next(i for i, v in enumerate(chosen) if v is lead.variants[0])
+    own = freed[spans[index]]
+    norm = np.linalg.norm(own, axis=1)
+    basis = np.linalg.qr((own / norm[:, None]).T)[0].T
+    rest = target - basis.T @ (basis @ target)
+    others = freed - (freed @ basis.T) @ basis
+    power = np.sum(others**2, axis=1)
+    along = others @ rest
+    gain = np.where(power > 1e-4 * np.sum(freed**2, axis=1), along**2 / np.maximum(power, 1e-300), 0.0)
+    best: dict[str, tuple[float, int]] = {}
+    for i, v in enumerate(chosen):
+        if v.effect == lead.effects[0] or len(v.parts) > 1:
+            continue
+        k = spans[i].start
+        if TERMS[v.effect].nonnegative and along[k] <= 0.0:
+            continue
+        if v.effect not in best or gain[k] > best[v.effect][0]:
+            best[v.effect] = (float(gain[k]), i)
+    after = chi2 - float(np.sum((basis @ target) ** 2))
+    found = []
+    for name, (drop, i) in best.items():
+        v = chosen[i]
+        both = np.concatenate([own, freed[spans[i]]])
+        solution = np.linalg.lstsq(both.T, target, rcond=1e-10)[0]
+        if TERMS[lead.effects[0]].nonnegative and solution[0] <= 0.0:
+            continue
+        strength = np.linalg.norm(both * solution[:, None], axis=1)
+        first = float(np.linalg.norm(strength[: len(own)]))
+        value = evidence(after - drop, lead.variants[0].shapes + len(own) + 1 + v.shapes)
+        names = (lead.effects[0], name)
+        shapes = (lead.variants[0], v)
+        parts = (tuple(solution[: len(own)]), (float(solution[-1]),))
+        if strength[-1] > first:
+            names, shapes, parts = names[::-1], shapes[::-1], parts[::-1]
+        found.append(Entry(names, shapes, parts, after - drop, value + _PRIOR_PAIR))
+    return found
+
+
+def _probabilities(
+    entries: Sequence[Entry], effects: Sequence[str], excess: float, informative: float
+) -> dict[str, float]:
+    logs: dict[str, list[float]] = {}
+    for e in entries:
+        if not e.effects:
+            logs[AGREES] = [e.log_evidence + _PRIOR_AGREES]
+        elif len(e.effects) == 1:
+            logs.setdefault(e.effects[0], []).append(e.log_evidence)
+        else:
+            logs.setdefault(e.effects[0], []).append(e.log_evidence)
+    if excess > 0.0:
+        explained = 0.5 * cost(_UNKNOWN_SHARE * excess, informative)
+        logs[UNKNOWN] = [-explained - _UNKNOWN_COST]
+    scaled = {k: float(logsumexp(np.array(v) / _TEMPERATURE)) for k, v in logs.items()}
+    total = float(logsumexp(list(scaled.values())))
+    result = {k: float(np.exp(v - total)) for k, v in scaled.items()}
+    for e in (*effects, AGREES, UNKNOWN):
+        result.setdefault(e, 0.0)
+    return result
+
+
+def reweighed(
+    rows: Sequence[RecordRows],
+    contest: Contest,
+    fits: Mapping[str, ModelFit],
+    effects: Sequence[str],
+) -> Contest:
+    """Return the contest with effects weighed by fits of their real size and shape."""
+    informative = sum(r.informative for r in rows)
+    entries = []
+    for e in contest.entries:
+        if len(e.effects) != 1 or e.effects[0] not in fits:
+            entries.append(e)
+            continue
+        fit = fits[e.effects[0]]
+        tangents = np.concatenate([fit.tangents, _reversal_doubt(rows, fit.model)])
+        left = _freed(fit.residual[None], tangents)[0]
+        chi2 = min(float(left @ left), e.chi2)
+        spent = sum(len(v.parts) + v.shapes for v in e.variants)
+        value = -0.5 * cost(chi2 - contest.noise, informative) - 0.5 * spent * np.log(contest.rows)
+        entries.append(replace(e, chi2=chi2, log_evidence=float(value)))
+    entries.sort(key=lambda e: -e.log_evidence)
+    chances = _probabilities(entries, effects, contest.excess, informative)
+    return replace(contest, entries=tuple(entries), probabilities=chances)

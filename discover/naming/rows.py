@@ -1,0 +1,106 @@
+"""Whitened rows of a record: its harmonics, and how they change while the record lasts.
+
+A sine test's lines alone can't show what changes over time. Its rows are therefore the record's
+projections on an orthonormal set: the mean, the harmonics, a slow change of the mean and a slow
+change of the lowest harmonics. Other records are windowed, and their windows show it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from discover.motion_fit import Observation, real_rows
+from discover.naming.noise import noise_density
+from discover.sine_fit import harmonic_design
+from models.checks import Array
+from models.constitutive import FittedTerm
+
+_TOLERANCE = 1e-4  # of a record's force: no model is better, and no misfit below it matters
+_SLOW = 3
+_MODULATED = 3
+_SLOW_DOUBT = 2.0  # of the noise's variance below the test's frequency: it is extrapolated
+_MAINS = (50.0, 60.0)
+
+
+@dataclass(frozen=True)
+class RecordRows:
+    """A record's rows for regression, white where only noise is left."""
+
+    observation: Observation
+    """The record."""
+    target: Array
+    """(R,) the measured force."""
+    project: Callable[[Array], Array]
+    """Maps forces (..., N) on the motion's grid to rows (..., R)."""
+    informative: float
+    """Number of rows in which a model's error would show: few lines carry it."""
+    held: tuple[FittedTerm, ...] = ()
+    """Terms of the model in this record that are not fitted."""
+
+
+def record_rows(
+    observation: Observation, *, held: tuple[FittedTerm, ...] = ()
+) -> RecordRows:
+    """Return the rows of an observation, of whose model `held` is not fitted."""
+    if observation.kind == "sine":
+        return _sine_rows(observation, held)
+    windows = observation.windows
+    scales = []
+    for w in windows:
+        floor = _TOLERANCE**2 * w.power / max(w.omega.size, 1)
+        scales.append(np.tile(1.0 / np.sqrt(w.variance + floor), 2))
+
+    def project(columns: Array) -> Array:
+        parts = [real_rows(w.project(columns)) * s for w, s in zip(windows, scales, strict=True)]
+        return np.concatenate(parts, axis=-1)
+
+    target = np.concatenate(
+        [real_rows(w.force) * s for w, s in zip(windows, scales, strict=True)]
+    )
+    return RecordRows(observation, target, project, 8.0 * len(windows), held)
+
+
+def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> RecordRows:
+    window = observation.windows[0]
+    time, size = observation.time, observation.time.size
+    count = window.omega.size - 1
+    frequency = window.frequency
+    duration = float(time[-1] - time[0])
+    harmonics = harmonic_design(time, frequency, count)[:, : 2 * count + 1]
+    late = 2.0 * (time - time[0]) / duration - 1.0
+    slow = np.polynomial.legendre.legvander(late, _SLOW)[:, 1:]
+    parts, lines = [harmonics, slow], [0.0] * _SLOW
+    long_enough = duration * frequency > 3.0
+    if long_enough:
+        lowest = harmonics[:, 1 : 1 + 2 * min(_MODULATED, count)]
+        parts += [lowest * slow[:, [order]] for order in (0, 1)]
+        lines += 2 * [float(k // 2 + 1) for k in range(lowest.shape[1])]
+    basis, triangle = np.linalg.qr(np.concatenate(parts, axis=1))
+    basis *= np.sign(np.diagonal(triangle))
+    order = np.concatenate(([0.0], np.repeat(np.arange(1.0, count + 1), 2), lines)).astype(int)
+    if observation.record.uniform:
+        at, density = noise_density(observation, _SLOW)
+        smooth = np.exp(np.interp(np.log(np.maximum(order, 0.3) * frequency), np.log(at), np.log(density)))
+        variance = 0.5 * smooth * size / duration + size * _TOLERANCE**2 * window.power
+    else:
+        variance = size * (window.variance + _TOLERANCE**2 * window.power)[order]
+    variance[2 * count + 1 :] *= _SLOW_DOUBT
+    variance[0] *= _SLOW_DOUBT
+    variance[_hum(order * frequency, 2.0 / duration) & (order > 2)] *= 1e4
+    scale = 1.0 / np.sqrt(variance)
+    whitened = basis * scale
+
+    def project(columns: Array) -> Array:
+        return np.asarray(columns @ whitened)
+
+    return RecordRows(observation, project(observation.measured), project, 8.0, held)
+
+
+def _hum(frequencies: Array, width: float) -> Array:
+    """Return which lines lie on a low multiple of the mains."""
+    multiples = np.array([m * k for m in _MAINS for k in (1, 2, 3)])
+    distance = np.abs(frequencies[:, None] - multiples)
+    return np.asarray(np.any(distance < width, axis=1))

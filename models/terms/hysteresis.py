@@ -1,0 +1,73 @@
+"""Hysteresis: friction that yields elastically before it slips, and so remembers the path."""
+
+import numpy as np
+from numba import njit
+
+from models.checks import Array
+from models.motion import Motion
+from models.terms.term import Parameter, Shape, Term
+
+JENKINS, DAHL, IWAN = 0.0, 1.0, 2.0
+_SLIDERS = 8
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _stop(x: Array, limit: float, *, passes: int) -> Array:
+    """Return an elastic slider's deflection over its limit, in [-1, 1]."""
+    result = np.empty(x.size)
+    state = 0.0
+    last = x[0]
+    for _ in range(passes):
+        for i in range(x.size):
+            state = min(max(state + (x[i] - last) / limit, -1.0), 1.0)
+            last = x[i]
+            result[i] = state
+    return result
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _dahl(x: Array, limit: float, *, passes: int) -> Array:
+    """Return Dahl's state: dz = (1 - z sign dx) dx / limit, exact for each step."""
+    result = np.empty(x.size)
+    state = 0.0
+    last = x[0]
+    for _ in range(passes):
+        for i in range(x.size):
+            step = x[i] - last
+            goal = 1.0 if step > 0.0 else -1.0
+            state = goal + (state - goal) * np.exp(-abs(step) / limit)
+            last = x[i]
+            result[i] = state
+    return result
+
+
+def column(motion: Motion, shape: Shape) -> Array:
+    """Return the friction force over its limit, in [-1, 1].
+
+    `form` 0 is one elastic slider (Jenkins), 1 is Dahl's exponential, 2 is sliders whose limits
+    are spread evenly up to twice the yield displacement (Iwan). A periodic motion is gone through
+    twice, so that the memory is that of the steady state.
+    """
+    x, limit = np.ascontiguousarray(motion.displacement), shape["yield_displacement"]
+    passes = 2 if motion.periodic else 1
+    if shape["form"] == DAHL:
+        return np.asarray(_dahl(x, limit, passes=passes))
+    if shape["form"] == IWAN:
+        limits = 2.0 * limit * (np.arange(_SLIDERS) + 0.5) / _SLIDERS
+        parts = [_stop(x, each, passes=passes) * each for each in limits]
+        return np.asarray(np.sum(parts, axis=0) / limits.sum())
+    return np.asarray(_stop(x, limit, passes=passes))
+
+
+TERM = Term(
+    "hysteresis",
+    "N",
+    "f times an elastic slider's state, which yields over the yield displacement",
+    column,
+    parameters=(
+        Parameter("yield_displacement", 0.003, 1.5, 0.1, "m", "displacement", "log"),
+        Parameter("form", 0.0, 2.0, 0.0, ""),
+    ),
+    nonnegative=True,
+    mistaken_for=("coulomb-friction", "stiffness", "stribeck-friction"),
+)

@@ -1,0 +1,47 @@
+"""Sensor clipping: the force channel saturates."""
+
+import numpy as np
+
+from models.checks import Array
+from models.motion import Motion
+from models.terms.term import ForceOf, Parameter, Shape, Term
+
+
+def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
+    """Return the force less `coefficient` (1: all) of what exceeds the limit.
+
+    `softness` (N) rounds the corner; `side` 0 clips both ways, 1 only above, -1 only below.
+    """
+    force = force_of(motion)
+    return np.asarray(force - coefficient * excess(force, shape))
+
+
+def excess(force: Array, shape: Shape) -> Array:
+    """Return what of `force` lies beyond the limit, N, signed."""
+    limit, soft = shape["limit"], shape["softness"]
+
+    def over(value: Array) -> Array:
+        depth = value - limit
+        if soft == 0.0:
+            return np.asarray(np.maximum(depth, 0.0))
+        return np.asarray(soft * np.logaddexp(0.0, depth / soft))
+
+    upper = over(force) if shape["side"] >= 0.0 else np.zeros_like(force)
+    lower = over(-force) if shape["side"] <= 0.0 else np.zeros_like(force)
+    return np.asarray(upper - lower)
+
+
+TERM = Term(
+    "sensor-clipping",
+    "1",
+    "the force channel saturates at the limit",
+    transform=transform,
+    acts="output",
+    parameters=(
+        Parameter("limit", 0.2, 1.0, 0.9, "N", "force"),
+        Parameter("softness", 0.0, 0.5, 0.0, "N"),
+        Parameter("side", -1.0, 1.0, 0.0, ""),
+    ),
+    nonnegative=True,
+    mistaken_for=("cavitation",),
+)

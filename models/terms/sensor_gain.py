@@ -1,0 +1,32 @@
+"""Sensor gain: the force channel reads too much or too little, throughout or in one range."""
+
+import numpy as np
+
+from models.checks import Array
+from models.motion import Motion
+from models.terms.term import ForceOf, Parameter, Shape, Term
+
+
+def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
+    """Return the force times 1 + g, where the record's peak lies in the amplifier's range.
+
+    The range reaches from `threshold` (N) upwards, or up to it where `side` is negative.
+    """
+    force = force_of(motion)
+    peak = float(np.abs(force).max())
+    inside = peak >= shape["threshold"] if shape["side"] >= 0.0 else peak < shape["threshold"]
+    return force * (1.0 + coefficient) if inside else force
+
+
+TERM = Term(
+    "sensor-gain",
+    "1",
+    "the force channel reads 1 + g times the force",
+    transform=transform,
+    acts="output",
+    parameters=(
+        Parameter("threshold", 0.0, 1e9, 0.0, "N"),
+        Parameter("side", -1.0, 1.0, 1.0, ""),
+    ),
+    mistaken_for=("inertia", "viscous-damping"),
+)

@@ -1,0 +1,28 @@
+"""Thermal drift: damping that falls, or rises, as the oil warms during a record."""
+
+import numpy as np
+
+from models.checks import Array
+from models.motion import Motion
+from models.terms.term import Parameter, Shape, Term
+
+
+def column(motion: Motion, shape: Shape) -> Array:
+    """Return velocity times 1 - exp(-t/T), m/s: the change of viscous damping with time.
+
+    `warming_time` 0 stands for a straight change, v t.
+    """
+    elapsed = motion.time - motion.time[0]
+    constant = shape["warming_time"]
+    change = elapsed if constant == 0.0 else -np.expm1(-elapsed / constant)
+    return np.asarray(motion.velocity * change)
+
+
+TERM = Term(
+    "thermal-drift",
+    "N s/m",
+    "c times velocity times 1 - exp(-t/T), t from the record's start",
+    column,
+    parameters=(Parameter("warming_time", 0.1, 1e5, 0.0, "s", "", "log"),),
+    mistaken_for=("sensor-gain", "viscous-damping"),
+)
