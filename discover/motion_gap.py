@@ -20,6 +20,7 @@ from models.simulation import ErrorEstimate, Load, PeriodicPast, sampled_load, s
 from models.structure import oscillator
 
 _STEPS_PER_PERIOD = 200
+_FEWEST_AT_START = 12  # samples that the state at the start is fitted to
 _NEGLIGIBLE = 1e-9  # of the largest line
 _LATE = 1.0 / 3.0  # of the record: where drift and amplitude are judged
 
@@ -173,28 +174,42 @@ def _one(model: Model, record: Record, system: CarriedSystem) -> RecordMotion:
     natural = math.sqrt(system.stiffness / system.mass) / (2.0 * math.pi)
     fastest = max(natural, observation.frequency)
     parts = max(math.ceil(record.step * fastest * _STEPS_PER_PERIOD), 1)
+    if record.displacement is None:
+        raise InputError("displacement", expected="given", where=record.file)
+    measured = record.displacement[usable]
+    position, velocity = _start(measured, record.step, observation)
     response = simulate(
         structure,
         load,
         step=record.step / parts,
         duration=float(elapsed[-1]),
-        displacement=float(observation.motion.displacement[0]),
-        velocity=float(observation.motion.velocity[0]),
+        displacement=position,
+        velocity=velocity,
         past=past,
         keep_every=parts,
     )
-    if record.displacement is None:
-        raise InputError("displacement", expected="given", where=record.file)
     return RecordMotion(
         file=record.file,
         held_out=record.held_out,
         time=time,
-        measured=np.asarray(record.displacement[usable]),
+        measured=measured,
         simulated=response.displacement[:, 0],
         noise=observation.displacement_noise,
         force_gap_percent=predict_record(observation, model).accuracy.relative_percent,
         error=response.error,
     )
+
+
+def _start(measured: Array, step: float, observation: Observation) -> tuple[float, float]:
+    """Return displacement and velocity at the first usable sample.
+
+    By a cubic through the first half period of the band's end: at a record's very end, band-limited
+    derivatives lean on what is not there.
+    """
+    end = observation.cutoff or 8.0 * observation.frequency
+    count = min(max(round(0.5 / end / step), _FEWEST_AT_START), measured.size)
+    line = np.polynomial.Polynomial.fit(step * np.arange(count), measured[:count], 3)
+    return float(line(0.0)), float(line.deriv()(0.0))
 
 
 def _load(record: Record, system: CarriedSystem, usable: slice, elapsed: Array) -> Load:

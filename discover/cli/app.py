@@ -17,6 +17,7 @@ from discover.cli.design import design
 from discover.cli.discover import discover
 from discover.cli.invocation import Invocation
 from discover.cli.reproduce import reproduce
+from discover.cli.simulate import simulate
 from discover.cli.synth import synth
 from models.checks import InputError
 
@@ -32,7 +33,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for verb in (check, discover, synth, design, reproduce):
+for verb in (check, discover, simulate, synth, design, reproduce):
     app.command(verb.__name__)(verb)
 
 

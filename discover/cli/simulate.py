@@ -1,0 +1,63 @@
+"""``inerter simulate``: models' forces for the measured motion, ranked on held-out records."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from discover.cli import options
+from discover.cli.results import deliver, result_folder, working
+from models.checks import InputError
+
+
+def simulate(
+    arguments: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="MODEL... CAMPAIGN",
+            help="Models (model.json, ioim-laminar, ioim-turbulent, foim, sfoim), then the"
+            " campaign's folder.",
+        ),
+    ],
+    out: options.Out = None,
+    as_json: options.AsJson = False,
+    seed: options.Seed = options.DEFAULT_SEED,
+    jobs: options.Jobs = 1,
+) -> int:
+    """Predict the force of each model for the measured motion, beside the measured force.
+
+    Several models are ranked on held-out records. Writes simulation.json and one CSV a record.
+    """
+    *names, campaign = arguments
+    if not names:
+        raise InputError(
+            "arguments", expected="models and then a campaign", found=repr(campaign),
+            where="simulate",
+        )  # fmt: skip
+    twice = next((n for n in names if names.count(n) > 1), None)
+    if twice is not None:
+        raise InputError("models", expected="each once", found=f"{twice} twice", where="simulate")
+    folder = result_folder("simulate", campaign, out)
+
+    # Loaded here: --help and complaints about options need no numerics.
+    from discover.cli.named_model import named_model
+    from discover.readers import read_campaign
+    from discover.report.simulation import simulation_lines
+    from discover.simulate import simulate_forces
+
+    with working(f"Reading {campaign}"):
+        measured = read_campaign(campaign)
+        models = {name: named_model(name, measured.device, where=name) for name in names}
+    with working(f"Predicting {len(measured.records)} records"):
+        answer = simulate_forces(measured, models, seed=seed, jobs=jobs)
+        document, tables = answer.to_dict(), answer.tables()
+    deliver(
+        document,
+        name="simulation.json",
+        folder=folder,
+        files=tables,
+        summary=simulation_lines(document),
+        as_json=as_json,
+    )
+    return 0
