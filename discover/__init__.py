@@ -14,14 +14,23 @@ from discover._version import __version__
 
 if TYPE_CHECKING:
     from discover.data_check import check_campaign
+    from discover.gap import close_gap
     from discover.readers import read_campaign
     from discover.study import StudyOptions, run_study
 
-__all__ = ["StudyOptions", "__version__", "check_campaign", "read_campaign", "run_study"]
+__all__ = [
+    "StudyOptions",
+    "__version__",
+    "check_campaign",
+    "close_gap",
+    "read_campaign",
+    "run_study",
+]
 
 _HOMES = {
     "StudyOptions": "discover.study",
     "check_campaign": "discover.data_check",
+    "close_gap": "discover.gap",
     "read_campaign": "discover.readers",
     "run_study": "discover.study",
 }

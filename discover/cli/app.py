@@ -15,6 +15,7 @@ from discover._version import __version__
 from discover.cli.check import check
 from discover.cli.design import design
 from discover.cli.discover import discover
+from discover.cli.gap import gap
 from discover.cli.invocation import Invocation
 from discover.cli.reproduce import reproduce
 from discover.cli.simulate import simulate
@@ -33,7 +34,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for verb in (check, discover, simulate, synth, design, reproduce):
+for verb in (check, discover, gap, simulate, synth, design, reproduce):
     app.command(verb.__name__)(verb)
 
 

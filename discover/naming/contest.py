@@ -30,11 +30,12 @@ _NOISE_UNCERTAINTY = 0.06  # of the noise's variance, over all rows
 _TEMPERATURE = 3.0
 _PRIOR_AGREES = 4.0
 _PRIOR_PAIR = -6.0
-_UNKNOWN_SHARE = 0.25
+_UNKNOWN_SHARE = 0.6
 _UNKNOWN_COST = 18.0
 _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
 _REVERSALS = (0.4, 2.5)
+_NEEDS = {"stribeck-friction": "coulomb-friction"}  # a fall needs a friction to fall to
 
 
 @dataclass(frozen=True)
@@ -162,7 +163,9 @@ def run_contest(
         Further variants.
     """
     scales = scales_of([r.observation for r in rows], reversal)
-    chosen = [v for e in effects for v in variants(e, scales)] + list(user)
+    terms = {t.id for r in rows[:1] for t in (*r.held, *fit.model.terms)}
+    possible = [e for e in effects if _NEEDS.get(e, e) in terms or e not in _NEEDS]
+    chosen = [v for e in possible for v in variants(e, scales)] + list(user)
     informative = sum(r.informative for r in rows)
     size = fit.residual.size
     dof = size - len(fit.parameters)

@@ -1,0 +1,83 @@
+"""``inerter gap``: where a model and the records disagree, what is missing, the model mended."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from discover.cli import options
+from discover.cli.invocation import Invocation
+from discover.cli.results import deliver, result_folder, working
+from models.checks import one_of
+
+_FIT = "fit:"
+
+
+def gap(
+    context: typer.Context,
+    campaign: Annotated[
+        Path,
+        typer.Argument(metavar="CAMPAIGN", help="Folder with campaign.toml and its records."),
+    ],
+    model: Annotated[
+        str,
+        typer.Option(
+            "--model",
+            metavar="M",
+            help="A model.json, ioim-laminar, ioim-turbulent, foim or sfoim (from the device),"
+            " or fit:TERM,TERM,… (coefficients fitted first).",
+        ),
+    ],
+    fixed: Annotated[
+        bool, typer.Option("--fixed", help="Hold the model's coefficients throughout.")
+    ] = False,
+    effects: Annotated[
+        str | None,
+        typer.Option("--effects", metavar="ID,ID,…", help="Name only these effects."),
+    ] = None,
+    out: options.Out = None,
+    as_json: options.AsJson = False,
+    seed: options.Seed = options.DEFAULT_SEED,
+    jobs: options.Jobs = 1,
+) -> int:
+    """Find where a model and the records disagree, name what is missing, and add it."""
+    only = options.identifiers(effects, where="--effects")
+    folder = result_folder("gap", campaign, out)
+
+    # Loaded here: --help and complaints about options need no numerics.
+    from discover.cli.named_model import named_model
+    from discover.gap import close_gap, term_ids
+    from discover.naming.candidates import EFFECTS
+    from discover.readers import read_campaign
+    from discover.report.document import json_text
+    from discover.report.gap import gap_figures, gap_lines, gap_report
+
+    for name in only or ():
+        one_of("effect", name, EFFECTS, where="--effects")
+    if model.startswith(_FIT):
+        term_ids(model)
+    with working(f"Reading {campaign}"):
+        measured = read_campaign(campaign)
+    chosen = model if model.startswith(_FIT) else named_model(model, measured.device)
+    with working(f"Comparing {len(measured.records)} records"):
+        found = close_gap(measured, chosen, fixed=fixed, effects=only, seed=seed, jobs=jobs)
+    with working("Drawing"):
+        document = found.to_dict()
+        figures = gap_figures(document, found.figure_data)
+        invocation: Invocation = context.obj
+        page = gap_report(
+            document, found.figure_data, figures, command=invocation.repeat(seed=seed)
+        )
+    files = {"report.html": page, "model.json": json_text(found.model_dict())}
+    files |= {f"figures/{name}.svg": svg for name, svg in figures.items()}
+    deliver(
+        document,
+        name="gap.json",
+        folder=folder,
+        files=files,
+        summary=gap_lines(document),
+        as_json=as_json,
+    )
+    return 0
