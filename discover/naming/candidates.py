@@ -119,40 +119,63 @@ def _delay(scales: Scales) -> list[Variant]:
 
 def _compliance(scales: Scales) -> list[Variant]:
     stiffest = scales.force / scales.displacement
-    return [
-        _one("series-compliance", 1, probe=float(c), loss=loss)
-        for c in np.array([0.003, 0.02, 0.06, 0.15]) / stiffest
-        for loss in (0.05, 0.3)
+    springs = np.geomspace(0.001, 0.3, 10) / stiffest
+    plain = [
+        _one("series-compliance", 1, probe=float(c), loss=loss, inside=inside)
+        for c in springs
+        for loss in (0.03, 0.25)
+        for inside in (0.0, 1.0)
     ]
+    aired = [
+        _one(
+            "series-compliance", 2, probe=float(c), loss=0.1, inside=1.0,
+            hardening=h * scales.force, side=side,
+        )
+        for c in springs[2::2]
+        for h in (0.05, 0.3)
+        for side in (0.0, 1.0, -1.0)
+    ]
+    return plain + aired
 
 
 def _stop(scales: Scales) -> list[Variant]:
     return [
         _one("end-stop", 1, gap=float(g * scales.displacement), exponent=p, side=s)
         for g in (0.3, 0.45, 0.55, 0.65, 0.72, 0.78, 0.84, 0.89, 0.93, 0.96)
-        for p in (1.0, 1.5, 2.0)
+        for p in (1.0, 1.5, 2.0, 3.0)
         for s in (0.0, 1.0, -1.0)
     ]
 
 
 def _backlash(scales: Scales) -> list[Variant]:
     return [
-        _one("backlash", 1, gap=float(g * scales.displacement), stiffness=k)
-        for g in np.geomspace(0.002, 0.4, 10)
-        for k in (0.7, 2.0)
+        _one(
+            "backlash", 3, gap=float(g * scales.displacement), contact=k * scales.omega,
+            loss=loss, inside=0.0,
+        )
+        for g in np.geomspace(1e-4, 0.3, 11)
+        for k in (4.0, 12.0, 30.0)
+        for loss in (0.15, 0.5)
     ]
 
 
 def _cavitation(scales: Scales) -> list[Variant]:
-    return [
-        _one(
-            "cavitation", 1, limit=float(c * scales.force), softness=soft * c * scales.force,
-            refill=refill, side=s,
-        )
-        for c in (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.92)
-        for soft, refill in ((0.0, 0.0), (0.06, 0.0), (0.2, 0.0), (0.0, 0.1), (0.0, 0.5))
+    shares = np.linspace(0.1, 0.96, 12)
+    cut = [
+        _one("cavitation", 1, limit=float(c * scales.force), softness=soft * c * scales.force,
+             contact=0.0, side=s)
+        for c in shares
+        for soft in (0.0, 0.06, 0.2)
         for s in (1.0, -1.0)
     ]
+    torn = [
+        _one("cavitation", 3, limit=float(c * scales.force), contact=k * scales.omega, loss=0.3,
+             refill=refill, side=s)
+        for c in shares
+        for k, refill in ((6.0, 0.0), (25.0, 0.0), (25.0, 1.0))
+        for s in (1.0, -1.0)
+    ]
+    return cut + torn
 
 
 def _hysteresis(scales: Scales) -> list[Variant]:

@@ -29,7 +29,9 @@ _NOISE_DEVIATIONS = 4.0  # of chi-square, within which the misfit is the noise's
 _NOISE_UNCERTAINTY = 0.06  # of the noise's variance, over all rows
 _TEMPERATURE = 3.0
 _PRIOR_AGREES = 4.0
+_NO_AGREEMENT = 300.0  # of chi-square above the noise: then it can't be called agreement
 _PRIOR_PAIR = -6.0
+_PAIR_DOUBT = 0.17  # nats a row: two shapes explain more by chance
 _UNKNOWN_SHARE = 0.6
 _UNKNOWN_COST = 18.0
 _PAIR_CANDIDATES = 6
@@ -198,7 +200,7 @@ def run_contest(
     pairs: list[Entry] = []
     if ranked and ranked[0].chi2 > noise + 20.0:
         for lead in ranked[:_PAIR_CANDIDATES]:
-            pairs += _pairs(lead, chosen, spans, freed, target, chi2, evidence)
+            pairs += _pairs(lead, chosen, spans, freed, target, chi2, evidence, informative)
     everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
     probabilities = _probabilities(everything, effects, chi2 - noise, informative)
     return Contest(tuple(everything), probabilities, chi2 - noise, size, noise)
@@ -217,7 +219,7 @@ def _single(v, raw, freed, target, chi2, evidence):  # type: ignore[no-untyped-d
     return Entry((v.effect,), (v,), (tuple(solution),), now, value)
 
 
-def _pairs(lead, chosen, spans, freed, target, chi2, evidence):  # type: ignore[no-untyped-def]
+def _pairs(lead, chosen, spans, freed, target, chi2, evidence, informative):  # type: ignore[no-untyped-def]
     """Return the best pair of `lead` with every other effect."""
     index = next(i for i, v in enumerate(chosen) if v is lead.variants[0])
     own = freed[spans[index]]
@@ -253,7 +255,7 @@ def _pairs(lead, chosen, spans, freed, target, chi2, evidence):  # type: ignore[
         parts = (tuple(solution[: len(own)]), (float(solution[-1]),))
         if strength[-1] > first:
             names, shapes, parts = names[::-1], shapes[::-1], parts[::-1]
-        found.append(Entry(names, shapes, parts, after - drop, value + _PRIOR_PAIR))
+        found.append(Entry(names, shapes, parts, after - drop, value + _PRIOR_PAIR - _PAIR_DOUBT * informative))
     return found
 
 
@@ -263,7 +265,8 @@ def _probabilities(
     logs: dict[str, list[float]] = {}
     for e in entries:
         if not e.effects:
-            logs[AGREES] = [e.log_evidence + _PRIOR_AGREES]
+            doubt = 0.5 * float(np.clip(excess, 0.0, _NO_AGREEMENT))
+            logs[AGREES] = [e.log_evidence + _PRIOR_AGREES - doubt]
         elif len(e.effects) == 1:
             logs.setdefault(e.effects[0], []).append(e.log_evidence)
         else:

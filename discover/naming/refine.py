@@ -21,7 +21,8 @@ def extended(model: ForceModel, entry: Entry, *, only_first: bool = True) -> For
     pairs = list(zip(entry.variants, entry.coefficients, strict=True))
     for variant, values in pairs[:1] if only_first else pairs:
         for part, value in zip(variant.parts, values, strict=True):
-            terms.append(FittedTerm(part.id, _sensible(part.id, value), part.shape))
+            start = part.probe if part.id == "series-compliance" else _sensible(part.id, value)
+            terms.append(FittedTerm(part.id, start, part.shape))
     return ForceModel(tuple(terms), model.name)
 
 

@@ -1,45 +1,28 @@
 """Series compliance: a mount, a joint or the oil yields, so the device moves less than the ends."""
 
-from collections.abc import Callable
-
-import numpy as np
-from numpy.typing import NDArray
-
 from models.checks import Array
 from models.motion import Motion
+from models.terms.joint import Joint, through_joint
 from models.terms.term import ForceOf, Parameter, Shape, Term
-
-Response = Callable[[Array], NDArray[np.complex128]]
 
 
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
-    """Return the force through a spring of compliance c: F/(1 + c Z), line by line.
+    """Return the force through a spring of this compliance, stepped in time.
 
-    Z = -b omega^2 + i omega d is the device's dynamic stiffness, b and d as fit its own force
-    best; friction passes the same filter. Exact where the device is linear.
+    With `inside` 1 the spring is that of the fluid, and dry friction is beside it. Oil with air
+    in it grows stiffer as force rises over `hardening`, on one `side` or (0) on both.
     """
     force = force_of(motion)
-    columns = np.stack([motion.acceleration, motion.velocity], axis=1)
-    (inertance, damping), *_ = np.linalg.lstsq(columns, force - force.mean(), rcond=None)
-
-    def response(omega: Array) -> NDArray[np.complex128]:
-        own = -abs(inertance) * omega**2 + 1j * omega * abs(damping)
-        loss = 1.0 + 1j * shape["loss"]
-        return np.asarray(1.0 / (1.0 + coefficient * own / loss))
-
-    return through(force, motion, response)
-
-
-def through(force: Array, motion: Motion, response: Response) -> Array:
-    """Return `force` filtered by a frequency response; the samples may have gaps."""
-    step = motion.step
-    uniform = motion.time[0] + step * np.arange(motion.time.size)
-    even = force if motion.periodic else np.interp(uniform, motion.time, force)
-    pad = 0 if motion.periodic else even.size // 8
-    wide = np.pad(even, pad, mode="reflect") if pad else even
-    lines = np.fft.rfft(wide) * response(2.0 * np.pi * np.fft.rfftfreq(wide.size, step))
-    back = np.fft.irfft(lines, n=wide.size)[pad : pad + even.size]
-    return back if motion.periodic else np.asarray(np.interp(motion.time, uniform, back))
+    if coefficient <= 0.0:
+        return force
+    joint = Joint(
+        1.0 / coefficient,
+        shape["loss"],
+        hardening=shape["hardening"],
+        hardens=shape["side"],
+        fluid_only=shape["inside"] > 0.0,
+    )
+    return through_joint(force, motion, joint)
 
 
 TERM = Term(
@@ -48,7 +31,12 @@ TERM = Term(
     "a spring of this compliance in series: the device sees x - c F",
     transform=transform,
     acts="input",
-    parameters=(Parameter("loss", 0.0, 0.5, 0.05, ""),),
+    parameters=(
+        Parameter("loss", 0.0, 1.0, 0.05, ""),
+        Parameter("inside", 0.0, 1.0, 0.0, ""),
+        Parameter("hardening", 0.0, 1e9, 0.0, "N"),
+        Parameter("side", -1.0, 1.0, 0.0, ""),
+    ),
     nonnegative=True,
     mistaken_for=("inertia", "time-delay", "fractional-derivative"),
 )
