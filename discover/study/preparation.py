@@ -187,15 +187,6 @@ def _plain_terms(terms: tuple[str, ...]) -> tuple[str, ...]:
 def _findings(observations: tuple[Observation, ...]) -> tuple[Finding, ...]:
     result = []
     for o in observations:
-        if o.phase_fitted:
-            result.append(
-                Finding(
-                    "note",
-                    "has no displacement: the motion is a pure sine of the labelled frequency and"
-                    " amplitude, its phase fitted to the force.",
-                    o.file,
-                )
-            )
         if o.cutoff is not None:
             result.append(
                 Finding(

@@ -1,0 +1,61 @@
+"""What the records can tell: the expected gap between structures at the true noise, no fit used."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tests.calibration.generator import Case, Test
+
+TELLING = 10.0
+_ORDERS = np.linspace(0.02, 1.98, 99)
+
+
+def _columns(test: Test, names: tuple[str, ...], order: float) -> np.ndarray:
+    a, w, theta = test.amplitude, 2.0 * np.pi * test.frequency, test.theta
+    v = a * w * np.cos(theta)
+    made = {
+        "inertia": -a * w**2 * np.sin(theta),
+        "viscous": v,
+        "quadratic": v * np.abs(v),
+        "turbulent": np.sign(v) * np.abs(v) ** 1.75,
+        "fractional": a * w**order * np.sin(theta + order * np.pi / 2.0),
+        "friction": np.sign(v),
+    }
+    return np.stack([made[n] for n in names], axis=1)
+
+
+def _whiten(test: Test, signal: np.ndarray) -> np.ndarray:
+    step = signal[1:] - test.correlation * signal[:-1]
+    return step / (test.sigma * np.sqrt(1.0 - test.correlation**2))
+
+
+_RIVALS = {
+    "FOIM": ("fractional", "friction"),
+    "IOIM-linear": ("inertia", "viscous", "friction"),
+    "IOIM-laminar": ("inertia", "viscous", "quadratic", "friction"),
+    "IOIM-turbulent": ("inertia", "viscous", "quadratic", "turbulent", "friction"),
+}
+
+
+def expected_gap(case: Case, rival: str) -> float:
+    """Return the nats by which a rival structure falls short of the noise-free force."""
+    force = np.concatenate([_whiten(t, t.clean) for t in case.tests])
+    names = _RIVALS[rival]
+    best = np.inf
+    for order in _ORDERS if rival == "FOIM" else (1.0,):
+        columns = np.concatenate([_whiten(t, _columns(t, names, order)) for t in case.tests])
+        scale = np.linalg.norm(columns, axis=0)
+        misfit = force - columns / scale @ np.linalg.lstsq(columns / scale, force, rcond=1e-12)[0]
+        best = min(best, 0.5 * float(misfit @ misfit))
+    return best
+
+
+def separable(case: Case) -> bool:
+    """Return whether every rival that does not hold the truth is at least ten nats away.
+
+    A larger rival that holds the truth can't be told by misfit; the truth must then stand against
+    the smaller ones.
+    """
+    truth = set(_RIVALS[case.structure])
+    rivals = [r for r, names in _RIVALS.items() if not truth <= set(names)]
+    return all(expected_gap(case, r) >= TELLING for r in rivals)
