@@ -64,7 +64,10 @@ def term_ids(text: str, *, where: str = "--model") -> tuple[str, ...]:
         term = find_term(name, where=where)
         if ids.count(name) > 1:
             raise InputError("terms", expected="each once", found=f"{name} twice", where=where)
-        if term.column is None or any(p.scaled_by == "displacement" for p in term.parameters):
+        scaled = any(
+            p.scaled_by in ("displacement", "force") and p.default for p in term.parameters
+        )
+        if term.column is None or scaled:
             raise InputError(
                 "term of a baseline", expected="an added force of the motion now", found=name,
                 where=where,

@@ -31,6 +31,10 @@ _FOLLOWS = {
 }
 
 
+_LOOPS = ("time-delay", "series-compliance", "sensor-gain", "sensor-clipping", "cavitation",
+          "fractional-derivative", "backlash")
+
+
 def curves(rows: RecordRows, before: Array, after: Array, was: Misfit, now: Misfit) -> GapCurves:
     """Return a record's curves, decimated; `before` and `after` are on the motion's grid."""
     o = rows.observation
@@ -103,6 +107,8 @@ def shape_of(
         step = float((o.time[-1] - o.time[0]) / (o.time.size - 1))
         stop = min(stop, int(np.ceil(1.0 / (o.frequency * step))) + 1)
     chosen = np.unique(np.linspace(0, stop - 1, min(_SHOWN, stop)).astype(int))
+    if abscissa == "velocity" and entry.effect not in _LOOPS:
+        chosen = chosen[np.argsort(along[chosen], kind="stable")]
     band = 1.96 * relative_error * np.abs(force[chosen])
     return EffectShape(
         number, entry.effect, abscissa, unit, along[chosen], force[chosen],

@@ -36,8 +36,8 @@ class NamedEffect:
     """Of these, what the records can't tell from it."""
     gap: tuple[float, float]
     """Percent before and after, fitted records."""
-    unseen: tuple[float, float]
-    """Likewise, on records that were not fitted."""
+    unseen: tuple[float | None, float | None]
+    """Likewise, on records that were not fitted; None where there is one record only."""
     dropped: tuple[str, ...]
     """Earlier effects that it made superfluous."""
 
@@ -104,7 +104,7 @@ class Gap:
     """They were held throughout."""
     gap_percent: float
     """Before, pooled over the fitted records."""
-    held_out_gap_percent: float
+    held_out_gap_percent: float | None
     """Before, over the records that were not fitted."""
     noise_percent: float
     """Pooled."""
@@ -120,7 +120,7 @@ class Gap:
     """"agrees", "closed", "reduced" or "unexplained"."""
     final_gap_percent: float
     """After."""
-    final_held_out_gap_percent: float
+    final_held_out_gap_percent: float | None
     """After."""
     unexplained_percent: float
     """What is left above the noise."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from joblib import Parallel, delayed
 
 from discover.figure_data import GapFigureData
 from discover.gap.accuracy import pooled
@@ -12,8 +13,8 @@ from discover.gap.baseline import Baseline, prepare_baseline
 from discover.gap.figures import added_to, curves, shape_of
 from discover.gap.result import Gap, NamedEffect, RecordGap
 from discover.gap.search import Round, Search, Stage, search
-from discover.gap.where import places, where_in_words
-from discover.motion_fit import observe
+from discover.gap.where import places, surface, where_in_words
+from discover.motion_fit import Observation, observe
 from discover.naming.candidates import EFFECTS
 from discover.naming.contest import AGREES, UNKNOWN, Contest
 from discover.naming.fit import whole_model
@@ -80,18 +81,21 @@ def close_gap(
     return _answer(campaign, baseline, found, seed)
 
 
-def _observe(campaign: Campaign, jobs: int):  # type: ignore[no-untyped-def]
+def _observe(campaign: Campaign, jobs: int) -> tuple[Observation, ...]:
     if jobs <= 1 or len(campaign.records) < 2:
         return tuple(observe(r) for r in campaign.records)
-    from joblib import Parallel, delayed
-
-    return tuple(Parallel(n_jobs=jobs, prefer="threads")(delayed(observe)(r) for r in campaign.records))
+    each = (delayed(observe)(r) for r in campaign.records)
+    return tuple(Parallel(n_jobs=jobs, prefer="threads")(each))
 
 
 def _seen(baseline: Baseline, stage: Stage) -> float:
     return pooled(
         [m for r, m in zip(baseline.rows, stage.misfits, strict=True) if not r.observation.held_out]
     )
+
+
+def _unseen(stage: Stage) -> float | None:
+    return pooled(stage.unseen) if stage.unseen else None
 
 
 def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) -> Gap:
@@ -122,7 +126,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         fitted=baseline.fitted,
         fixed=baseline.fixed,
         gap_percent=_seen(baseline, start),
-        held_out_gap_percent=pooled(start.unseen),
+        held_out_gap_percent=_unseen(start),
         noise_percent=noise,
         where=located,
         where_text=where_in_words(located),
@@ -130,7 +134,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         records=records,
         verdict=verdict,
         final_gap_percent=final_gap,
-        final_held_out_gap_percent=pooled(final.unseen),
+        final_held_out_gap_percent=_unseen(final),
         unexplained_percent=unexplained,
         shape=shape,
         last=_stated(found.last, ""),
@@ -182,7 +186,7 @@ def _named(baseline: Baseline, entry: Round, before: Stage, after: Stage) -> Nam
             e for e, p in alternatives if p > _EQUAL * probability and e not in (AGREES, UNKNOWN)
         ),
         gap=(_seen(baseline, before), _seen(baseline, after)),
-        unseen=(pooled(before.unseen), pooled(after.unseen)),
+        unseen=(_unseen(before), _unseen(after)),
         dropped=entry.dropped,
     )
 
@@ -228,8 +232,6 @@ def _figures(
         shape_of(fitted, entry, i, _relative(named))
         for i, (entry, named) in enumerate(zip(found.rounds, rounds, strict=True))
     )
-    from discover.gap.where import surface
-
     return GapFigureData(drawn, shapes, surface(rows, before))
 
 

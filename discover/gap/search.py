@@ -87,7 +87,9 @@ def _misfit(rows: RecordRows, model: ForceModel) -> Misfit:
 
 def _left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
     """Return each record's misfit by the model fitted to the others, to first order."""
-    if not fit.parameters or len(rows) < 2:
+    if len(rows) < 2:
+        return ()
+    if not fit.parameters:
         return tuple(_misfit(r, fit.model) for r in rows)
     values = np.array([value_of(fit.model, p) for p in fit.parameters])
     result, start = [], 0

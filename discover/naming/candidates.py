@@ -94,7 +94,9 @@ def _power(scales: Scales) -> list[Variant]:
 
 def _coulomb(scales: Scales) -> list[Variant]:
     speeds = [0.0, *np.geomspace(0.002, 0.25, 7) * scales.speed]
-    return [_one("coulomb-friction", 1, transition_speed=float(s)) for s in speeds]
+    lengths = np.geomspace(1e-4, 0.02, 6) * scales.displacement
+    jumps = [_one("coulomb-friction", 1, transition_speed=float(s)) for s in speeds]
+    return jumps + [_one("coulomb-friction", 1, presliding=float(z)) for z in lengths]
 
 
 def _fractional(scales: Scales) -> list[Variant]:
@@ -103,7 +105,16 @@ def _fractional(scales: Scales) -> list[Variant]:
 
 
 def _stribeck(scales: Scales) -> list[Variant]:
-    return [
+    bristles = [
+        _one(
+            "stribeck-friction", 2, stribeck_velocity=float(s), form=float(form),
+            presliding=float(z),
+        )
+        for s in np.geomspace(0.01, 0.5, 5) * scales.speed
+        for z in np.geomspace(3e-4, 0.05, 5) * scales.displacement
+        for form in (0, 2)
+    ]
+    return bristles + [
         _one(
             "stribeck-friction", 1, stribeck_velocity=float(s), form=float(form),
             transition_speed=scales.reversal,
@@ -161,27 +172,19 @@ def _backlash(scales: Scales) -> list[Variant]:
 
 def _cavitation(scales: Scales) -> list[Variant]:
     shares = np.linspace(0.1, 0.96, 12)
-    cut = [
-        _one("cavitation", 1, limit=float(c * scales.force), softness=soft * c * scales.force,
-             contact=0.0, side=s)
-        for c in shares
-        for soft in (0.0, 0.06, 0.2)
-        for s in (1.0, -1.0)
-    ]
-    torn = [
+    return [
         _one("cavitation", 3, limit=float(c * scales.force), contact=k * scales.omega, loss=0.3,
              refill=refill, side=s)
         for c in shares
         for k, refill in ((6.0, 0.0), (25.0, 0.0), (25.0, 1.0))
         for s in (1.0, -1.0)
     ]
-    return cut + torn
 
 
 def _hysteresis(scales: Scales) -> list[Variant]:
     return [
         _one("hysteresis", 1, yield_displacement=float(r), form=float(form))
-        for r in np.geomspace(0.004, 1.5, 12) * scales.displacement
+        for r in np.geomspace(0.02, 1.5, 10) * scales.displacement
         for form in (0, 1, 2)
     ]
 
@@ -194,8 +197,9 @@ def _along(scales: Scales) -> list[Variant]:
 
 def _thermal(scales: Scales) -> list[Variant]:
     return [
-        _one("thermal-drift", 1, warming_time=float(t))
+        _one("thermal-drift", 1, warming_time=float(t), heating=heating)
         for t in (0.0, *np.geomspace(0.02, 1.0, 5) * scales.duration)
+        for heating in (0.0, 1.0)
     ]
 
 
@@ -215,14 +219,25 @@ def _gain(scales: Scales) -> list[Variant]:
 
 
 def _clipping(scales: Scales) -> list[Variant]:
-    return [
-        _one(
-            "sensor-clipping", 1, limit=float(c * scales.force),
-            softness=soft * c * scales.force, side=0.0,
-        )
-        for c in (0.3, 0.4, 0.5, 0.6, 0.7, 0.78, 0.85, 0.9, 0.95, 0.98)
+    shares = (0.3, 0.4, 0.5, 0.6, 0.7, 0.78, 0.85, 0.9, 0.95, 0.98)
+
+    def rail(limit: float, soft: float, side: float) -> Part:
+        force = float(limit * scales.force)
+        return Part("sensor-clipping", {"limit": force, "softness": soft * force, "side": side})
+
+    even = [
+        Variant("sensor-clipping", (rail(c, soft, side),), 1)
+        for c in shares
         for soft in (0.0, 0.05, 0.15)
+        for side in (0.0, 1.0, -1.0)
     ]
+    uneven = [
+        Variant("sensor-clipping", (rail(up, 0.0, 1.0), rail(down, 0.0, -1.0)), 2)
+        for up in shares
+        for down in shares
+        if up != down
+    ]
+    return even + uneven
 
 
 def _cubic(scales: Scales) -> list[Variant]:

@@ -200,7 +200,7 @@ def run_contest(
     pairs: list[Entry] = []
     if ranked and ranked[0].chi2 > noise + 20.0:
         for lead in ranked[:_PAIR_CANDIDATES]:
-            pairs += _pairs(lead, chosen, spans, freed, target, chi2, evidence, informative)
+            pairs += _pairs(lead, best, chosen, spans, freed, target, chi2, evidence, informative)
     everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
     probabilities = _probabilities(everything, effects, chi2 - noise, informative)
     return Contest(tuple(everything), probabilities, chi2 - noise, size, noise)
@@ -219,7 +219,7 @@ def _single(v, raw, freed, target, chi2, evidence):  # type: ignore[no-untyped-d
     return Entry((v.effect,), (v,), (tuple(solution),), now, value)
 
 
-def _pairs(lead, chosen, spans, freed, target, chi2, evidence, informative):  # type: ignore[no-untyped-def]
+def _pairs(lead, singles, chosen, spans, freed, target, chi2, evidence, informative):  # type: ignore[no-untyped-def]
     """Return the best pair of `lead` with every other effect."""
     index = next(i for i, v in enumerate(chosen) if v is lead.variants[0])
     own = freed[spans[index]]
@@ -247,13 +247,12 @@ def _pairs(lead, chosen, spans, freed, target, chi2, evidence, informative):  # 
         solution = np.linalg.lstsq(both.T, target, rcond=1e-10)[0]
         if TERMS[lead.effects[0]].nonnegative and solution[0] <= 0.0:
             continue
-        strength = np.linalg.norm(both * solution[:, None], axis=1)
-        first = float(np.linalg.norm(strength[: len(own)]))
         value = evidence(after - drop, lead.variants[0].shapes + len(own) + 1 + v.shapes)
         names = (lead.effects[0], name)
         shapes = (lead.variants[0], v)
         parts = (tuple(solution[: len(own)]), (float(solution[-1]),))
-        if strength[-1] > first:
+        other = singles.get(name)
+        if other is not None and other.log_evidence > lead.log_evidence:
             names, shapes, parts = names[::-1], shapes[::-1], parts[::-1]
         found.append(Entry(names, shapes, parts, after - drop, value + _PRIOR_PAIR - _PAIR_DOUBT * informative))
     return found

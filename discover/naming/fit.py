@@ -12,7 +12,7 @@ from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
-_FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill")
+_FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "heating")
 _ITERATIONS = 12
 _SMALL = 1e-5
 

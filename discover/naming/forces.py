@@ -16,9 +16,10 @@ DELAY = "time-delay"
 _PATH = ("hysteresis",)
 
 
-def needs_cycle(term: Term) -> bool:
+def needs_cycle(term: Term, shape: Shape) -> bool:
     """Tell whether a term has memory: it then sees one cycle of the steady state."""
-    return term.acts != "force" or term.id in _PATH
+    remembers = term.id in _PATH or shape.get("presliding", 0.0) > 0.0
+    return term.acts != "force" or remembers
 
 
 def _from_cycle(observation: Observation, force: Array) -> Array:
@@ -41,9 +42,9 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
         rest = ForceModel(tuple(t for t in model.terms if t.id != DELAY))
         return model_force(replace(observation, motion=observation.late(delay)), rest)
     motion, cycle = observation.motion, observation.cycle
-    if cycle is None or not any(needs_cycle(t.term) for t in model.terms):
+    if cycle is None or not any(needs_cycle(t.term, t.shape) for t in model.terms):
         return model.force(motion)
-    plain = ForceModel(tuple(t for t in model.terms if not needs_cycle(t.term)))
+    plain = ForceModel(tuple(t for t in model.terms if not needs_cycle(t.term, t.shape)))
     steady = ForceModel(tuple(t for t in model.terms if not _changes(t)))
     steady_plain = ForceModel(tuple(t for t in plain.terms if not _changes(t)))
     change = steady.force(cycle) - steady_plain.force(cycle)
@@ -75,7 +76,7 @@ def added_force(
     if term.id == DELAY and observation.late is not None:
         late = ForceModel((*model.terms, FittedTerm(DELAY, probe)))
         return (model_force(observation, late) - model_force(observation, model)) / probe
-    memory = needs_cycle(term) and observation.cycle is not None
+    memory = needs_cycle(term, shape) and observation.cycle is not None
     motion = observation.cycle if memory else observation.motion
     if motion is None:
         raise ValueError("a record with memory has a cycle")

@@ -4,11 +4,17 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
+from models.terms.hysteresis import bristle_state
 from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return sign v, or tanh(v/v_t) where the transition speed v_t is not zero."""
+    """Return sign v, or tanh(v/v_t) where the transition speed v_t is not zero.
+
+    With a `presliding` length (m) it is the state of bristles that deflect before they slip.
+    """
+    if shape.get("presliding", 0.0) > 0.0:
+        return bristle_state(motion, shape["presliding"])
     transition = shape.get("transition_speed", 0.0)
     if transition == 0.0:
         return np.sign(motion.velocity)
@@ -20,7 +26,10 @@ TERM = Term(
     "N",
     "f0 times sign v; friction reverses over the transition speed, 0 for a jump",
     column,
-    parameters=(Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),),
+    parameters=(
+        Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
+        Parameter("presliding", 1e-5, 0.02, 0.0, "m", "displacement", "log"),
+    ),
     nonnegative=True,
     mistaken_for=("stribeck-friction", "power-law-damping", "hysteresis"),
 )

@@ -41,6 +41,12 @@ def _dahl(x: Array, limit: float, *, passes: int) -> Array:
     return result
 
 
+def bristle_state(motion: Motion, length: float) -> Array:
+    """Return Dahl's state, in [-1, 1]: the sign of v that follows over a presliding length, m."""
+    x = np.ascontiguousarray(motion.displacement)
+    return np.asarray(_dahl(x, length, passes=2 if motion.periodic else 1))
+
+
 def column(motion: Motion, shape: Shape) -> Array:
     """Return the friction force over its limit, in [-1, 1].
 

@@ -4,16 +4,20 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
+from models.terms.hysteresis import bristle_state
 from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
     """Return exp(-(v/v_s)^2) sign v (`form` 0), exp(-|v|/v_s) sign v (1), or the rational fall
-    sign v / (1 + (v/v_s)^2) (2); with a transition speed, tanh stands for the sign.
+    sign v / (1 + (v/v_s)^2) (2); with a transition speed, tanh stands for the sign, and with a
+    `presliding` length (m) the state of bristles that deflect before they slip.
     """
     v, speed = motion.velocity, shape["transition_speed"]
     ratio = np.abs(v) / shape["stribeck_velocity"]
     falls = (np.exp(-(ratio**2)), np.exp(-ratio), 1.0 / (1.0 + ratio**2))
+    if shape["presliding"] > 0.0:
+        return np.asarray(falls[int(shape["form"])] * bristle_state(motion, shape["presliding"]))
     direction = np.sign(v) if speed == 0.0 else np.tanh(v / speed)
     return np.asarray(falls[int(shape["form"])] * direction)
 
@@ -27,6 +31,7 @@ TERM = Term(
         Parameter("stribeck_velocity", 0.01, 0.5, 0.1, "m/s", "speed", "log"),
         Parameter("form", 0.0, 2.0, 0.0, ""),
         Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
+        Parameter("presliding", 1e-5, 0.05, 0.0, "m", "displacement", "log"),
     ),
     nonnegative=True,
     mistaken_for=("coulomb-friction", "hysteresis"),

@@ -10,12 +10,14 @@ from models.terms.term import Parameter, Shape, Term
 def column(motion: Motion, shape: Shape) -> Array:
     """Return velocity times 1 - exp(-t/T), m/s: the change of viscous damping with time.
 
-    `warming_time` 0 stands for a straight change, v t.
+    `warming_time` 0 stands for a straight change, v t. With `heating` 1 the change is in
+    proportion to the mean square speed of the record, whose dissipation warms the oil.
     """
     elapsed = motion.time - motion.time[0]
     constant = shape["warming_time"]
     change = elapsed if constant == 0.0 else -np.expm1(-elapsed / constant)
-    return np.asarray(motion.velocity * change)
+    power = float(np.mean(motion.velocity**2)) if shape["heating"] > 0.0 else 1.0
+    return np.asarray(motion.velocity * change * power)
 
 
 TERM = Term(
@@ -23,6 +25,9 @@ TERM = Term(
     "N s/m",
     "c times velocity times 1 - exp(-t/T), t from the record's start",
     column,
-    parameters=(Parameter("warming_time", 0.1, 1e5, 0.0, "s", "", "log"),),
+    parameters=(
+        Parameter("warming_time", 0.1, 1e5, 0.0, "s", "", "log"),
+        Parameter("heating", 0.0, 1.0, 0.0, ""),
+    ),
     mistaken_for=("sensor-gain", "viscous-damping"),
 )
