@@ -90,7 +90,9 @@ def shape_of(
         o = r.observation
         return model_force(o, whole_model(r, model)) - model_force(o, whole_model(r, rest))
 
-    sizes = [float(np.std(change(r)) / max(np.std(r.observation.measured), 1e-300)) for r in rows]
+    sizes = [
+        float(np.std(change(r))) / max(float(np.std(r.observation.measured)), 1e-300) for r in rows
+    ]
     r = rows[int(np.argmax(sizes))]
     o = r.observation
     abscissa, unit = _FOLLOWS.get(entry.effect, ("velocity", "m/s"))

@@ -156,7 +156,8 @@ def _verdict(found: Search, gap: float, noise: float) -> str:
 
 def _stated(contest: Contest, name: str) -> tuple[tuple[str, float], ...]:
     """Return what else it may be, until nearly all of the probability is stated."""
-    stated, total = [], contest.probabilities.get(name, 0.0)
+    stated: list[tuple[str, float]] = []
+    total = contest.probabilities.get(name, 0.0)
     for other, probability in contest.ranked:
         if other == name:
             continue
@@ -270,6 +271,8 @@ def _findings(baseline: Baseline, found: Search, text: str) -> tuple[Finding, ..
         )
     if not baseline.fixed and not baseline.fitted:
         result.append(
-            Finding("note", "The given coefficients are refitted with each effect; --fixed holds them.")
+            Finding(
+                "note", "The given coefficients are refitted with each effect; --fixed holds them."
+            )
         )
     return tuple(result)

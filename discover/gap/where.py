@@ -73,7 +73,7 @@ class Place:
 def misfit_at_samples(rows: RecordRows, model: ForceModel) -> Array:
     """Return measured less model at the usable samples, N."""
     o = rows.observation
-    return o.measured - o.at_samples(model_force(o, whole_model(rows, model)))
+    return np.asarray(o.measured - o.at_samples(model_force(o, whole_model(rows, model))))
 
 
 def places(rows: Sequence[RecordRows], model: ForceModel) -> tuple[Place, ...]:
@@ -132,7 +132,7 @@ def _smooth_misfit(rows: RecordRows, left: Array) -> Array:
     """Return the part of a sine test's misfit that repeats every cycle; others as they are."""
     o = rows.observation
     if o.kind != "sine":
-        return left - left.mean()
+        return np.asarray(left - left.mean())
     phase = (np.mod(o.time * o.frequency, 1.0) * _PHASES).astype(int)
     count = np.maximum(np.bincount(phase, minlength=_PHASES), 1)
     mean = np.bincount(phase, weights=left, minlength=_PHASES) / count

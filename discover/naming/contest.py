@@ -9,7 +9,7 @@ for the case that two are missing.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -81,13 +81,7 @@ class Contest:
         return next((e for e in self.entries if e.effects == (effect,)), None)
 
 
-@dataclass(frozen=True)
-class _Columns:
-    """Whitened columns of all variants, freed of what the model's own parameters explain."""
-
-    variants: tuple[Variant, ...]
-    owner: Array
-    matrix: Array
+Evidence = Callable[[float, int], float]
 
 
 def candidate_columns(
@@ -98,15 +92,16 @@ def candidate_columns(
     blocks = []
     for r in rows:
         forces = np.stack(
-            [
-                added_force(
-                    r.observation, whole_model(r, model), TERMS[p.id], TERMS[p.id].shape(p.shape), p.probe
-                )
-                for p in parts
-            ]
+            [_unit_force(r, model, p) for p in parts]
         )
         blocks.append(r.project(forces))
     return np.concatenate(blocks, axis=1)
+
+
+def _unit_force(rows: RecordRows, model: ForceModel, part: Part) -> Array:
+    term = TERMS[part.id]
+    whole = whole_model(rows, model)
+    return added_force(rows.observation, whole, term, term.shape(part.shape), part.probe)
 
 
 def _reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
@@ -179,15 +174,15 @@ def run_contest(
     chi2 = float(target @ target)
 
     def evidence(chi2: float, parameters: int) -> float:
-        return -0.5 * cost(chi2 - noise, informative) - 0.5 * parameters * np.log(size)
+        return -0.5 * cost(chi2 - noise, informative) - 0.5 * parameters * float(np.log(size))
 
     nothing = Entry((), (), (), chi2, evidence(chi2, 0))
     entries = [nothing]
-    start = 0
+    first = 0
     spans: list[slice] = []
     for v in chosen:
-        span = slice(start, start + len(v.parts))
-        start = span.stop
+        span = slice(first, first + len(v.parts))
+        first = span.stop
         spans.append(span)
         entry = _single(v, raw[span], freed[span], target, chi2, evidence)
         if entry is not None:
@@ -200,13 +195,17 @@ def run_contest(
     pairs: list[Entry] = []
     if ranked and ranked[0].chi2 > noise + 20.0:
         for lead in ranked[:_PAIR_CANDIDATES]:
-            pairs += _pairs(lead, best, chosen, spans, freed, target, chi2, evidence, informative)
+            start = (target, chi2)
+            pairs += _pairs(lead, best, chosen, spans, freed, start, evidence, informative)
     everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
     probabilities = _probabilities(everything, effects, chi2 - noise, informative)
     return Contest(tuple(everything), probabilities, chi2 - noise, size, noise)
 
 
-def _single(v, raw, freed, target, chi2, evidence):  # type: ignore[no-untyped-def]
+def _single(
+    v: Variant, raw: Array, freed: Array, target: Array, chi2: float, evidence: Evidence
+) -> Entry | None:
+    """Return one variant's fit; None where the model has absorbed it or its sign is wrong."""
     gram = freed @ freed.T
     power = np.sum(raw**2, axis=1)
     if np.any(np.diagonal(gram) <= _COLLINEAR * power) or not np.all(np.isfinite(gram)):
@@ -219,8 +218,18 @@ def _single(v, raw, freed, target, chi2, evidence):  # type: ignore[no-untyped-d
     return Entry((v.effect,), (v,), (tuple(solution),), now, value)
 
 
-def _pairs(lead, singles, chosen, spans, freed, target, chi2, evidence, informative):  # type: ignore[no-untyped-def]
-    """Return the best pair of `lead` with every other effect."""
+def _pairs(
+    lead: Entry,
+    singles: Mapping[str, Entry],
+    chosen: Sequence[Variant],
+    spans: Sequence[slice],
+    freed: Array,
+    start: tuple[Array, float],
+    evidence: Evidence,
+    informative: float,
+) -> list[Entry]:
+    """Return the best pair of `lead` with every other effect; `start` is misfit and chi-square."""
+    target, chi2 = start
     index = next(i for i, v in enumerate(chosen) if v is lead.variants[0])
     own = freed[spans[index]]
     norm = np.linalg.norm(own, axis=1)
@@ -229,7 +238,8 @@ def _pairs(lead, singles, chosen, spans, freed, target, chi2, evidence, informat
     others = freed - (freed @ basis.T) @ basis
     power = np.sum(others**2, axis=1)
     along = others @ rest
-    gain = np.where(power > 1e-4 * np.sum(freed**2, axis=1), along**2 / np.maximum(power, 1e-300), 0.0)
+    apart = power > 1e-4 * np.sum(freed**2, axis=1)
+    gain = np.where(apart, along**2 / np.maximum(power, 1e-300), 0.0)
     best: dict[str, tuple[float, int]] = {}
     for i, v in enumerate(chosen):
         if v.effect == lead.effects[0] or len(v.parts) > 1:
@@ -247,14 +257,15 @@ def _pairs(lead, singles, chosen, spans, freed, target, chi2, evidence, informat
         solution = np.linalg.lstsq(both.T, target, rcond=1e-10)[0]
         if TERMS[lead.effects[0]].nonnegative and solution[0] <= 0.0:
             continue
-        value = evidence(after - drop, lead.variants[0].shapes + len(own) + 1 + v.shapes)
+        spent = lead.variants[0].shapes + len(own) + 1 + v.shapes
+        value = evidence(after - drop, spent) + _PRIOR_PAIR - _PAIR_DOUBT * informative
         names = (lead.effects[0], name)
         shapes = (lead.variants[0], v)
         parts = (tuple(solution[: len(own)]), (float(solution[-1]),))
         other = singles.get(name)
         if other is not None and other.log_evidence > lead.log_evidence:
             names, shapes, parts = names[::-1], shapes[::-1], parts[::-1]
-        found.append(Entry(names, shapes, parts, after - drop, value + _PRIOR_PAIR - _PAIR_DOUBT * informative))
+        found.append(Entry(names, shapes, parts, after - drop, value))
     return found
 
 
@@ -266,8 +277,6 @@ def _probabilities(
         if not e.effects:
             doubt = 0.5 * float(np.clip(excess, 0.0, _NO_AGREEMENT))
             logs[AGREES] = [e.log_evidence + _PRIOR_AGREES - doubt]
-        elif len(e.effects) == 1:
-            logs.setdefault(e.effects[0], []).append(e.log_evidence)
         else:
             logs.setdefault(e.effects[0], []).append(e.log_evidence)
     if excess > 0.0:
@@ -276,8 +285,8 @@ def _probabilities(
     scaled = {k: float(logsumexp(np.array(v) / _TEMPERATURE)) for k, v in logs.items()}
     total = float(logsumexp(list(scaled.values())))
     result = {k: float(np.exp(v - total)) for k, v in scaled.items()}
-    for e in (*effects, AGREES, UNKNOWN):
-        result.setdefault(e, 0.0)
+    for name in (*effects, AGREES, UNKNOWN):
+        result.setdefault(name, 0.0)
     return result
 
 
@@ -299,8 +308,9 @@ def reweighed(
         left = _freed(fit.residual[None], tangents)[0]
         chi2 = min(float(left @ left), e.chi2)
         spent = sum(len(v.parts) + v.shapes for v in e.variants)
-        value = -0.5 * cost(chi2 - contest.noise, informative) - 0.5 * spent * np.log(contest.rows)
-        entries.append(replace(e, chi2=chi2, log_evidence=float(value)))
+        value = -0.5 * cost(chi2 - contest.noise, informative)
+        value -= 0.5 * spent * float(np.log(contest.rows))
+        entries.append(replace(e, chi2=chi2, log_evidence=value))
     entries.sort(key=lambda e: -e.log_evidence)
     chances = _probabilities(entries, effects, contest.excess, informative)
     return replace(contest, entries=tuple(entries), probabilities=chances)

@@ -144,6 +144,7 @@ def fit_model(
     parameters: Sequence[Parameter],
     *,
     iterations: int = _ITERATIONS,
+    enough: float = _SMALL,
 ) -> ModelFit:
     """Return the model with `parameters` fitted by Gauss-Newton, started from its own values.
 
@@ -157,6 +158,8 @@ def fit_model(
         What may change; the rest is held.
     iterations : int
         At most.
+    enough : float
+        Relative gain of chi-square below which to stop.
     """
     target = np.concatenate([r.target for r in rows])
     at = rows_of_model(rows, model)
@@ -174,12 +177,12 @@ def fit_model(
             rows_now = rows_of_model(rows, trial)
             now = float(np.sum((target - rows_now) ** 2))
             if now < chi2:
-                gained = chi2 - now > _SMALL * max(chi2, 1.0)
+                gained = chi2 - now > enough * max(chi2, 1.0)
                 model, at, chi2 = trial, rows_now, now
                 break
         if not gained:
             break
         tangents = _tangents(rows, model, parameters, at)
     gram = tangents @ tangents.T
-    covariance = np.linalg.pinv(gram, rcond=1e-12, hermitian=True)
+    covariance: Array = np.asarray(np.linalg.pinv(gram, rcond=1e-12, hermitian=True), dtype=float)
     return ModelFit(model, chi2, target - at, tangents, tuple(parameters), covariance)

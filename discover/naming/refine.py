@@ -12,6 +12,7 @@ from models.terms import TERMS
 
 _LEADING = 6
 _ITERATIONS = 6
+_ENOUGH = 0.02
 _WITHIN = 60.0  # nats behind the best, within which a candidate is refined
 
 
@@ -57,7 +58,8 @@ def refine(
     fits: dict[str, ModelFit] = {}
     for entry in leading:
         model = extended(fit.model, entry)
-        found = fit_model(rows, model, free_parameters(model), iterations=_ITERATIONS)
+        free = free_parameters(model)
+        found = fit_model(rows, model, free, iterations=_ITERATIONS, enough=_ENOUGH)
         if TERMS[entry.effects[0]].nonnegative and found.model.terms[-1].coefficient <= 0.0:
             continue
         fits[entry.effects[0]] = found

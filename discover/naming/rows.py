@@ -83,13 +83,15 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
     order = np.concatenate(([0.0], np.repeat(np.arange(1.0, count + 1), 2), lines)).astype(int)
     if observation.record.uniform:
         at, density = noise_density(observation, _SLOW)
-        smooth = np.exp(np.interp(np.log(np.maximum(order, 0.3) * frequency), np.log(at), np.log(density)))
+        wanted = np.log(np.maximum(order, 0.3) * frequency)
+        smooth = np.exp(np.interp(wanted, np.log(at), np.log(density)))
         variance = 0.5 * smooth * size / duration + size * _TOLERANCE**2 * window.power
     else:
         variance = size * (window.variance + _TOLERANCE**2 * window.power)[order]
     variance[2 * count + 1 :] *= _SLOW_DOUBT
     variance[0] *= _SLOW_DOUBT
-    variance[_hum(order * frequency, 2.0 / duration) & (order > 2)] *= 1e4
+    hum = _hum(order * frequency, 2.0 / duration)
+    variance[np.logical_and(hum, order > 2)] *= 1e4
     scale = 1.0 / np.sqrt(variance)
     whitened = basis * scale
 

@@ -85,7 +85,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint) -> Array:
     damping = 2.0 * joint.loss * np.sqrt(stiffness * mass)
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, _SLOW * top, stiffness,
-        damping, 0.5 * joint.gap, joint.lower, joint.upper, joint.refilled, joint.hardening,
+        damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.hardening,
         joint.hardens, _PASSES if motion.periodic else 1,
     )
     return np.asarray(force + carried - rigid)
@@ -95,7 +95,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint) -> Array:
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, stiffness: float, damping: float, half: float, lower: float,
-    upper: float, refilled: bool, hardening: float, hardens: float, passes: int,
+    upper: float, refilled: int, hardening: float, hardens: float, passes: int,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps."""
     size = x.size
@@ -124,7 +124,7 @@ def _step(
                     force = min(force, 0.0) if half > 0.0 else force
                 if hardening > 0.0 and (hardens == 0.0 or hardens * force > 0.0):
                     force *= 1.0 + min(abs(force) / hardening, _HARDEST)
-                if refilled and (force < lower or force > upper):
+                if refilled == 1 and (force < lower or force > upper):
                     slipped += (force - min(max(force, lower), upper)) / stiffness
                 force = min(max(force, lower), upper)
                 total += force

@@ -9,9 +9,11 @@ from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return exp(-(v/v_s)^2) sign v (`form` 0), exp(-|v|/v_s) sign v (1), or the rational fall
-    sign v / (1 + (v/v_s)^2) (2); with a transition speed, tanh stands for the sign, and with a
-    `presliding` length (m) the state of bristles that deflect before they slip.
+    """Return exp(-(v/v_s)^2) sign v.
+
+    `form` 1 is exp(-|v|/v_s) sign v, 2 the rational fall sign v / (1 + (v/v_s)^2). With a
+    transition speed, tanh stands for the sign; with a `presliding` length (m) the state of
+    bristles that deflect before they slip.
     """
     v, speed = motion.velocity, shape["transition_speed"]
     ratio = np.abs(v) / shape["stribeck_velocity"]
