@@ -3,8 +3,8 @@
 Windows are sorted by the coordinate. For every contiguous run the best named structure's evidence
 is computed from its triangle (runs grow by one window at a time, so triangles are merged and not
 made again), and dynamic programming finds the best division into any number of bands. A boundary
-costs what coding its place takes, log(W - 1) nats, besides the parameters of one more model, so
-that noise alone does not make one.
+costs what coding its place takes, log(W - 1) nats, and prior odds of one to twenty, besides the
+parameters of one more model, so that noise alone does not make one.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from models.checks import Array, Indices
 
 MIN_WINDOWS = 2
 MAX_BANDS = 5
+_AGAINST = 3.0  # nats: a boundary is one to twenty before the data
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,11 @@ class Segmentation:
         """Return the indices of the windows in a band."""
         ends = (*self.starts[1:], self.order.size)
         return self.order[self.starts[band] : ends[band]]
+
+
+def boundary_cost(windows: int) -> float:
+    """Return what a boundary costs among so many windows, nats."""
+    return float(np.log(max(windows - 1, 2))) + _AGAINST
 
 
 def _run_scores(
@@ -181,7 +187,7 @@ def segment(
     runs = _run_scores(triangles, dictionary, supports, shortest, rows)
     size = order.size
     most = max(1, min(MAX_BANDS, size // shortest))
-    cost = float(np.log(max(size - 1, 2)))
+    cost = boundary_cost(size)
     counts = range(1, most + 1) if bands is None else range(1, max(bands, 1) + 1)
     divisions = [_divide(runs, size, count, cost) for count in counts]
     values = np.array([d[0] for d in divisions])

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.regression.support import SupportFit
+from discover.segmentation import boundary_cost
 from discover.selection.evidence import penalty
 from discover.triangle import WindowRows
 from models.checks import Array
@@ -80,7 +81,7 @@ def find_transition(
     determinant = sum(w.log_determinant for w in windows)
     parameters = lower.support.parameters + upper.support.parameters + _PARAMETERS
     evidence = -0.5 * (float(misfit[row, column]) + determinant) - penalty(parameters, rows)
-    evidence -= float(np.log(max(len(windows) - 1, 2)))
+    evidence -= boundary_cost(len(windows))
     return Transition(
         float(np.exp(places[column])),
         (float(np.exp(places[near[0]])), float(np.exp(places[near[-1]]))),

@@ -17,12 +17,14 @@ from discover.library.family import Family
 from discover.triangle import Triangle
 from models.checks import Array, InputError
 from models.constitutive import FittedTerm
-from models.terms import find_term
+from models.terms import TERMS
 
 _GRID = 61
 _FINE = 17
 _REFINEMENTS = 3
 _TINY = 1e-12
+_NEVER_NEGATIVE = {"stiffness", *(i for i, t in TERMS.items() if t.nonnegative)}
+"""A negative stiffness is an inertance in disguise where frequencies are few."""
 MOST_DELAY = 5e-3  # s: channels of one rig are not further apart; more is memory of the device
 SAME_SHAPE = 0.05
 """Closer than this to a plain term's shape, two columns differ by little but their slope."""
@@ -103,7 +105,7 @@ def _shaped(identifier: str, value: float, dictionary: Dictionary) -> Array:
 
 def _signs_hold(ids: Sequence[str], coefficients: Array) -> bool:
     return all(
-        abs(c) <= MOST_DELAY if i == DELAY else not find_term(i).nonnegative or c >= 0.0
+        abs(c) <= MOST_DELAY if i == DELAY else i not in _NEVER_NEGATIVE or c >= 0.0
         for i, c in zip(ids, coefficients, strict=True)
     )
 

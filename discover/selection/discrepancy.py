@@ -3,7 +3,8 @@
 On a measured device every structure is wrong by a little, and noise alone would then reject them
 all and choose the most complex. What the best one leaves, above the noise, is added to the noise:
 by harmonic in sine tests, by part of the band in others, in proportion to each record's force.
-It is found in groups of neighbouring records, so that a boundary between bands does not count.
+It is found in overlapping groups of neighbouring records and taken low among them, so that the
+groups that straddle a boundary between bands do not count.
 A model's error changes slowly from test to test: neighbours that err alike are not independent
 witnesses, so the error's variance is raised by what their correlation takes from the count.
 """
@@ -22,7 +23,8 @@ from discover.selection.materiality import relative_triangle
 from discover.triangle import WindowRows
 from models.checks import Array
 
-_GROUP = 9
+_FEWEST, _MOST = 4, 9  # tests in a group of neighbours
+_QUANTILE = 0.35  # over groups: those that straddle a boundary err by more than the others
 _MOST_CORRELATED = 0.8
 _INFORMATIVE = 4  # blocks of a window that carry a model's error: the lowest harmonics
 
@@ -108,14 +110,16 @@ def with_discrepancy(
         With `discrepancy` in N^2 such that a relative error of one is the found one.
     """
     order = np.argsort(coordinate, kind="stable")
-    groups = np.array_split(order, max(1, order.size // _GROUP))
+    length = int(np.clip(order.size // 3, min(_FEWEST, order.size), _MOST))
+    starts = range(0, max(order.size - length, 0) + 1, max(length // 3, 1))
+    groups = [order[start : start + length] for start in starts]
     shares = [_share([windows[i] for i in group], dictionary, supports) for group in groups]
     size = max(s.excess.size for s in shares)
     padded = np.array([np.pad(s.excess, (0, size - s.excess.size)) for s in shares])
     spread = np.array([np.pad(s.error, (0, size - s.error.size)) for s in shares])
-    median = np.median(padded, axis=0)
-    certain = median > 2.0 * np.median(spread, axis=0) / np.sqrt(len(groups))
-    level = np.where(certain, median, 0.0)
+    typical = np.quantile(padded, _QUANTILE, axis=0)
+    certain = typical > 2.0 * np.median(spread, axis=0) / np.sqrt(max(len(groups) / 3.0, 1.0))
+    level = np.where(certain, typical, 0.0)
     square = sum(s.square for s in shares)
     correlation = sum(s.product for s in shares) / square if square else 0.0
     correlation = float(np.clip(correlation, 0.0, _MOST_CORRELATED))

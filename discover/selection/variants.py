@@ -14,7 +14,7 @@ from discover.triangle import WindowRows
 from models.checks import Array
 
 _SIGNIFICANT = 6.0  # rise of the log likelihood ratio from which a shape is worth its parameter
-_NODES = {"fractional-derivative": 5, "power-law-damping": 3}
+_NODES = {"fractional-derivative": 13, "power-law-damping": 3}
 
 
 def rich_weights(dictionary: Dictionary, chosen: dict[str, int] | None = None) -> Array:

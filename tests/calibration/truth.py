@@ -34,6 +34,7 @@ _RIVALS = {
     "IOIM-linear": ("inertia", "viscous", "friction"),
     "IOIM-laminar": ("inertia", "viscous", "quadratic", "friction"),
     "IOIM-turbulent": ("inertia", "viscous", "quadratic", "turbulent", "friction"),
+    "IOIM-turbulent, no losses": ("inertia", "viscous", "turbulent", "friction"),
 }
 
 
@@ -57,5 +58,9 @@ def separable(case: Case) -> bool:
     the smaller ones.
     """
     truth = set(_RIVALS[case.structure])
-    rivals = [r for r, names in _RIVALS.items() if not truth <= set(names)]
+    rivals = [
+        r
+        for r, names in _RIVALS.items()
+        if not truth <= set(names) and not r.startswith(case.structure)
+    ]
     return all(expected_gap(case, r) >= TELLING for r in rivals)
