@@ -7,15 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from models.checks import Array
-from models.harmonic_balance.problem import (
-    Friction,
-    Problem,
-    held_gap,
-    jacobian,
-    residual,
-    rubbing_speed,
-    sort_friction,
-)
+from models.harmonic_balance.balance import jacobian, residual
+from models.harmonic_balance.friction import Friction, held_gap, sort_friction
+from models.harmonic_balance.problem import Problem, relative_motion
 
 _ITERATIONS = 40
 _TOLERANCE = 1e-11  # of the balance, over the largest force in it
@@ -107,7 +101,7 @@ def newton(
         f = state.force
         largest = max(scale, float(np.abs(f).max(initial=0.0)))
         imbalance = float(np.abs(residual(problem, x, f, w)).max()) / largest
-        speed = max(float(np.abs(rubbing_speed(problem, x, w)).max(initial=0.0)), _LEAST_SPEED)
+        speed = max(float(np.abs(relative_motion(problem, x, w)[1]).max(initial=0.0)), _LEAST_SPEED)
         off = float(np.abs(held_gap(problem, x, state, w, give=give)).max(initial=0.0)) / speed
         settled = bool((before == state.held).all()) and off < _RULE_TOLERANCE
         if imbalance < _TOLERANCE and settled:
@@ -128,7 +122,7 @@ def settle(
     x, f = unknowns, friction
     if not any(law.rubs for law in problem.forces):
         return newton(problem, x, f, omega, constraint=constraint)
-    velocity = rubbing_speed(problem, x, omega)
+    _, velocity = relative_motion(problem, x, omega)
     least = min(float(law.limit(np.zeros(1))[0][0]) for law in problem.forces if law.rubs)
     soft = max(float(np.abs(velocity).max()), 1e-300) / least
     w = omega
@@ -197,8 +191,8 @@ def _by_log_omega(problem: Problem, x: Array, state: Friction, omega: float) -> 
     """Return the derivative of balance and held samples' rules by log omega."""
     up, down = omega * (1.0 + _FREQUENCY_STEP), omega * (1.0 - _FREQUENCY_STEP)
     forces = residual(problem, x, state.force, up) - residual(problem, x, state.force, down)
-    gaps = held_gap(problem, x, state, omega)
-    return np.concatenate([forces.ravel() / (2.0 * _FREQUENCY_STEP), gaps])
+    gaps = held_gap(problem, x, state, up) - held_gap(problem, x, state, down)
+    return np.concatenate([forces.ravel(), gaps]) / (2.0 * _FREQUENCY_STEP)
 
 
 def _border(

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.checks import Array
-from models.harmonic_balance.forces import sort_forces
-from models.harmonic_balance.problem import reverses
-from models.harmonic_balance.steady_state import SteadyState
+from models.harmonic_balance.friction import rules
+from models.harmonic_balance.problem import dynamic_stiffness, make_problem, relative_motion
+from models.harmonic_balance.steady_state import SteadyState, unknowns_of
+
+Complex = NDArray[np.complex128]
 
 _SMOOTH_HARMONICS = 20
 _LARGEST_TURN = 0.6  # rad between neighbouring points of the contour
@@ -59,92 +61,74 @@ class _Hill:
     """J(s) with everything that does not depend on s prepared."""
 
     def __init__(self, state: SteadyState) -> None:
-        structure = state.structure
-        forces = sort_forces(structure)
-        rubs = any(law.rubs for law in forces)
+        rubs = bool(state.held.any() or np.abs(state.friction).any())
         own = state.coefficients.shape[0] - 1
         harmonics = own if rubs else min(own, _SMOOTH_HARMONICS)
-        count = 2 * harmonics + 1
-        self.omega, self.structure, self.forces = state.omega, structure, forces
+        problem = make_problem(state.structure, state.drive, harmonics)
+        unknowns = unknowns_of(state)[:, : problem.samples]
+        self.problem, self.omega = problem, state.omega
+        count = problem.samples
         self.k = np.arange(-harmonics, harmonics + 1)
         phase = 2.0 * np.pi * np.arange(count) / count
         self.samples = np.exp(1j * np.outer(phase, self.k))
         self.coefficients = self.samples.conj().T / count
         mean = np.sinc(self.k / count)
-        self.from_cells, self.rub_samples = self.coefficients / mean[:, None], self.samples / mean
-        rates = 1j * state.omega * np.arange(own + 1)
-        turn = np.exp(np.outer(phase / state.omega, rates))
-        smooth = state.coefficients @ structure.directions.T
-        moved, speed = (turn @ smooth).real, (turn @ (rates[:, None] * smooth)).real
-        self.by_x: list[NDArray[np.complex128] | None] = []
-        self.by_v: list[NDArray[np.complex128] | None] = []
-        self.held: list[NDArray[np.int64]] = []
-        self.corner: list[Array] = []
-        self.share: list[Array] = []
-        for j, law in enumerate(forces):
-            slope_x, slope_v = law.slopes(moved[:, j], speed[:, j])
+        self.from_cells = self.coefficients / mean[:, None]
+        moved, velocity = relative_motion(problem, unknowns, state.omega)
+        friction = state.friction if rubs else np.zeros_like(moved)
+        found = rules(problem, unknowns, friction, state.omega)
+        self.by_x: list[Complex | None] = []
+        self.by_v: list[Complex | None] = []
+        lines, columns, corner = [], [], []
+        for j, law in enumerate(problem.forces):
+            direction = problem.structure.directions[j]
+            slope_x, slope_v = law.slopes(moved[j], velocity[j])
             by_v = self._carried(slope_v)
-            self.by_x.append(self._carried(slope_x))
-            held, corner, share = np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0)
-            if law.rubs:
-                sharp = rates / np.sinc(np.arange(own + 1) / count) * smooth[:, j]
-                velocity, change = (turn @ sharp).real, (turn @ (rates * sharp)).real
+            rule = found[j]
+            if rule is not None:
                 held = np.nonzero(state.held[j])[0]
-                at_rest = float(law.limit(np.zeros(1))[0][0])
-                cell = np.pi / count / state.omega
-                shift = cell * change[held]
-                before, after = velocity[held - 1], velocity[(held + 1) % count]
-                shift = np.where(reverses(before, after, shift), shift, 0.0)
-                corner = -np.abs(shift) / at_rest
-                share = cell * np.sign(shift) * state.friction[j, held] / at_rest
+                across = rule.neighbour[held]
+                own_part = rule.own[held, None] * self.samples[held]
+                mixed = own_part + rule.across[held, None] * self.samples[across]
+                lines += [np.multiply.outer(direction, row) for row in mixed]
+                columns += [np.outer(direction, self.from_cells[:, i]).ravel() for i in held]
+                corner += [-value for value in rule.yields[held]]
                 if law.stribeck:
-                    falling = law.limit(velocity)[1] * np.sign(state.friction[j])
+                    falling = law.limit(velocity[j])[1] * np.sign(friction[j])
                     falling = np.where(state.held[j], 0.0, falling)
-                    rubbed = self.from_cells @ (falling[:, None] * self.rub_samples)
-                    by_v = rubbed if by_v is None else by_v + rubbed
+                    rubbed = self.from_cells @ (falling[:, None] * self.samples)
+                    by_v = np.asarray(rubbed if by_v is None else by_v + rubbed)
+            self.by_x.append(self._carried(slope_x))
             self.by_v.append(by_v)
-            self.held.append(held)
-            self.corner.append(corner)
-            self.share.append(share)
+        self.lines, self.columns, self.corner = np.array(lines), np.array(columns), corner
 
-    def _carried(self, slope: Array) -> NDArray[np.complex128] | None:
+    def _carried(self, slope: Array) -> Complex | None:
         if not slope.any():
             return None
         return np.asarray(self.coefficients @ (slope[:, None] * self.samples))
 
     def sign(self, s: complex) -> complex:
         """Return the phase factor of det J(s) over that of the inertia, moved off the axis."""
-        structure, size, count = self.structure, self.structure.size, self.k.size
+        structure, count = self.problem.structure, self.k.size
+        size = structure.size
         rates = s + 1j * self.omega * self.k
-        square = rates[:, None, None]
-        blocks = square**2 * structure.mass + square * structure.damping + structure.stiffness
         matrix = np.zeros((size, count, size, count), dtype=np.complex128)
-        diagonal = np.arange(count)
-        rows, columns = [], []
-        for j, law in enumerate(self.forces):
-            direction = structure.directions[j]
+        for j, direction in enumerate(structure.directions):
             dyad = np.outer(direction, direction)
-            scalar = np.zeros(count, dtype=np.complex128)
-            for order, coefficient in law.linear:
-                scalar += coefficient * rates**order
-            blocks = blocks + scalar[:, None, None] * dyad
             for carried, factor in ((self.by_x[j], np.ones(count)), (self.by_v[j], rates)):
                 if carried is not None:
                     own = carried * factor
                     matrix += dyad[:, None, :, None] * own[None, :, None, :]
-            for index, share in zip(self.held[j], self.share[j], strict=True):
-                rule = self.rub_samples[index] * rates * (1.0 - share * rates)
-                rows.append(np.outer(direction, rule).ravel())
-                columns.append(np.outer(direction, self.from_cells[:, index]).ravel())
-        matrix[:, diagonal, :, diagonal] += blocks
+        diagonal = np.arange(count)
+        matrix[:, diagonal, :, diagonal] += dynamic_stiffness(self.problem, rates)
         total = matrix.reshape(size * count, size * count)
-        if rows:
-            extra = len(rows)
+        extra = len(self.corner)
+        if extra:
             wide = np.zeros((total.shape[0] + extra,) * 2, dtype=np.complex128)
             wide[:-extra, :-extra] = total
-            wide[-extra:, :-extra] = np.array(rows)
-            wide[:-extra, -extra:] = np.array(columns).T
-            wide[-extra:, -extra:] = np.diag(np.concatenate(self.corner))
+            wide[-extra:, :-extra] = (self.lines * rates).reshape(extra, -1)
+            wide[:-extra, -extra:] = self.columns.T
+            wide[-extra:, -extra:] = np.diag(self.corner)
             total = wide
         value = complex(np.linalg.slogdet(total)[0])
         # Inertia alone, its roots at -omega - i k omega: on the stable side, none on the contour.

@@ -155,8 +155,8 @@ def test_friction_against_den_hartog(omega: float) -> None:
     for harmonics in (16, 32, 128):
         state = steady_state(structure, SineDrive(1.0), omega / CYCLE, harmonics=harmonics)
         errors.append(abs(state.amplitude[0] / den_hartog(0.2, omega) - 1.0))
-    assert errors[-1] <= 1e-4
-    assert errors[0] / errors[-1] > 5.0
+    assert max(errors) <= 3e-4
+    assert errors[-1] <= 5e-5
 
 
 def test_friction_that_sticks_twice_a_cycle_is_found_roughly() -> None:
