@@ -14,7 +14,8 @@ from models.checks import Array
 from models.motion import Motion
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
-_PASSES = 3
+_PASSES = 8  # at most, until a cycle ends as it began
+_SETTLED = 3e-3
 _MOST_INNER = 60
 _HARDEST = 8.0
 _SLOW = 0.01  # of the greatest speed, over which dry friction reverses in time stepping
@@ -78,7 +79,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint) -> Array:
     top = float(np.abs(v).max())
     behind = 0.0 if joint.fluid_only else dry
     rigid = mass * motion.acceleration + viscous * v + quadratic * v * np.abs(v)
-    rigid = rigid + behind * np.tanh(v / (_SLOW * top))
+    rigid = rigid + behind * np.clip(v / (_SLOW * top), -1.0, 1.0)
     natural = np.sqrt(joint.stiffness / mass)
     inner = int(np.clip(np.ceil(natural * motion.step / _STEP), 1, _MOST_INNER))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
@@ -91,7 +92,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint) -> Array:
     return np.asarray(force + carried - rigid)
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, fastmath=True)  # type: ignore[untyped-decorator]
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, stiffness: float, damping: float, half: float, lower: float,
@@ -101,8 +102,10 @@ def _step(
     size = x.size
     result = np.empty(size)
     position, speed, slipped = x[0], v[0], 0.0
+    stroke, pace_limit = np.max(np.abs(x)), np.max(np.abs(v))
     h = step / inner
     for _ in range(passes):
+        was, was_speed = position - x[0] + slipped, speed
         for i in range(size):
             following = i + 1 if i + 1 < size else 0
             total = 0.0
@@ -129,8 +132,11 @@ def _step(
                 force = min(max(force, lower), upper)
                 total += force
                 resistance = (viscous + quadratic * abs(speed)) * speed
-                resistance += dry * np.tanh(speed / slow)
+                resistance += dry * min(max(speed / slow, -1.0), 1.0)
                 speed += h * (force - resistance) / mass
                 position += h * speed
             result[i] = total / inner
+        moved = abs(position - x[0] + slipped - was)
+        if moved < _SETTLED * stroke and abs(speed - was_speed) < _SETTLED * pace_limit:
+            break
     return result

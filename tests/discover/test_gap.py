@@ -1,0 +1,127 @@
+"""The gap search against data whose missing effect is known."""
+
+import json
+
+import numpy as np
+import pytest
+
+import discover
+from discover.gap import close_gap, term_ids
+from discover.gap.accuracy import misfit, pooled
+from discover.motion_fit import observe
+from models.checks import InputError
+from models.constitutive import FittedTerm, ForceModel, SegmentedModel
+from tests.discover.gap_data import campaign, device
+
+BASE = "fit:inertia,viscous-damping"
+KEYS = {
+    "schema", "version", "seed", "campaign", "baseline", "gap_percent", "noise_percent",
+    "held_out_gap_percent", "where", "rounds", "records", "verdict", "final_gap_percent",
+    "final_held_out_gap_percent", "unexplained_percent",
+}
+
+
+def test_nothing_is_missing_in_what_the_model_made():
+    found = close_gap(campaign(device), BASE)
+    assert found.verdict == "agrees"
+    assert found.rounds == ()
+    assert found.gap_percent == pytest.approx(1.0, rel=0.05)
+    assert not any(place.significant for place in found.where)
+
+
+@pytest.fixture(scope="module")
+def offset():
+    return close_gap(
+        campaign(lambda t, x, v, a: device(t, x, v, a) + 25.0, held_out=(1, 6)), BASE
+    )
+
+
+def test_an_offset_is_named_with_its_size_and_closes_the_gap(offset):
+    (only,) = offset.rounds
+    assert only.effect == "force-offset"
+    assert only.probability > 0.9
+    assert only.interval[0] < 25.0 < only.interval[1]
+    assert offset.verdict == "closed"
+    assert offset.final_held_out_gap_percent < 1.3 * offset.noise_percent
+    assert offset.held_out_gap_percent > 2.0 * offset.final_held_out_gap_percent
+
+
+def test_the_documents_hold_what_was_promised(offset):
+    document = offset.to_dict()
+    assert set(document) >= KEYS
+    assert json.loads(json.dumps(document, allow_nan=False)) == document
+    assert sum(place["share"] for place in document["where"]) == pytest.approx(1.0)
+    assert [r["held_out"] for r in document["records"]].count(True) == 2
+    mended = SegmentedModel.from_dict(offset.model_dict())
+    assert mended.bands[0].model.coefficient("force-offset") == pytest.approx(25.0, rel=0.05)
+
+
+def test_two_missing_effects_are_found_in_two_rounds():
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 4e7 * x**3 + 30.0
+
+    found = close_gap(campaign(law), BASE)
+    assert {r.effect for r in found.rounds} == {"cubic-stiffness", "force-offset"}
+    assert found.verdict == "closed"
+
+
+def test_fixed_coefficients_show_an_added_mass_that_a_fit_absorbs():
+    given = ForceModel((FittedTerm("inertia", 100.0), FittedTerm("viscous-damping", 800.0)))
+    data = campaign(device)
+    held = close_gap(data, given, fixed=True)
+    assert [r.effect for r in held.rounds] == ["inertia"]
+    assert held.rounds[0].coefficient == pytest.approx(20.0, rel=0.02)
+    free = close_gap(data, given)
+    assert free.verdict == "agrees"
+
+
+def test_only_the_effects_asked_for_are_named():
+    data = campaign(lambda t, x, v, a: device(t, x, v, a) + 25.0)
+    found = close_gap(data, BASE, effects=("time-delay", "cubic-stiffness"))
+    assert "force-offset" not in {r.effect for r in found.rounds}
+    assert found.verdict != "closed"
+
+
+def test_a_hum_between_the_harmonics_is_not_given_a_name():
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 3e5 * x * v * v
+
+    found = close_gap(campaign(law), BASE)
+    assert found.last[0][0] == "unknown"
+    assert found.verdict == "unexplained"
+    assert found.to_dict()["shape"]
+
+
+def test_leaving_out_a_record_predicts_worse_than_fitting_it():
+    found = close_gap(campaign(device), BASE)
+    assert found.leave_one_out
+    assert found.final_held_out_gap_percent >= found.final_gap_percent
+
+
+def test_the_misfit_of_the_exact_force_is_the_noise():
+    data = campaign(device, noise=0.02)
+    seen = [observe(r) for r in data.records]
+    exact = [misfit(o, device(0, *(getattr(o.motion, k) for k in (
+        "displacement", "velocity", "acceleration")))) for o in seen]
+    assert pooled(exact) == pytest.approx(2.0, rel=0.03)
+    assert pooled(exact, noise=True) == pytest.approx(2.0, rel=0.1)
+
+
+def test_bad_baselines_are_refused_in_words():
+    with pytest.raises(InputError, match="term"):
+        term_ids("fit:inertia,nonsense")
+    with pytest.raises(InputError, match="twice"):
+        term_ids("fit:inertia,inertia")
+    with pytest.raises(InputError, match="added force"):
+        term_ids("fit:inertia,time-delay")
+    with pytest.raises(InputError, match="effect"):
+        close_gap(campaign(device), BASE, effects=("nonsense",))
+
+
+def test_the_same_search_twice_is_the_same(offset):
+    again = close_gap(
+        campaign(lambda t, x, v, a: device(t, x, v, a) + 25.0, held_out=(1, 6)), BASE
+    )
+    assert again.to_dict() == offset.to_dict()
+    assert discover.close_gap is close_gap
+    assert np.isfinite(again.unexplained_percent)

@@ -1,0 +1,130 @@
+"""Effects against what is known exactly: filters, energy, limits, memory."""
+
+import numpy as np
+import pytest
+
+from models.constitutive import FittedTerm, ForceModel
+from models.motion import harmonic_motion, sine_motion
+from models.terms import TERMS
+
+MOTION = sine_motion(0.01, 3.0, samples=2048)
+OMEGA = 2.0 * np.pi * 3.0
+LINEAR = (FittedTerm("inertia", 200.0), FittedTerm("viscous-damping", 900.0))
+CONTRACT = {
+    "inertia", "viscous-damping", "quadratic-damping", "power-law-damping", "coulomb-friction",
+    "fractional-derivative", "stiffness", "cubic-stiffness", "force-offset", "asymmetric-damping",
+    "stribeck-friction", "time-delay", "series-compliance", "end-stop", "backlash", "cavitation",
+    "hysteresis", "position-dependent-friction", "thermal-drift", "sensor-gain", "sensor-drift",
+    "sensor-clipping",
+}
+
+
+def force(*terms, motion=MOTION):
+    return ForceModel(tuple(terms)).force(motion)
+
+
+def line(values, harmonic=1):
+    return np.fft.rfft(values)[harmonic] / values.size
+
+
+def test_the_catalogue_is_the_contracts():
+    assert set(TERMS) == CONTRACT
+    for term in TERMS.values():
+        assert (term.column is None) != (term.transform is None)
+        assert set(term.mistaken_for) <= CONTRACT - {term.id}
+
+
+@pytest.mark.parametrize("compliance", [1e-6, 3e-6, 1e-5])
+def test_compliance_before_a_linear_device_is_its_transfer_function(compliance):
+    shape = {"loss": 0.02}
+    found = force(*LINEAR, FittedTerm("series-compliance", compliance, shape))
+    device = -200.0 * OMEGA**2 + 1j * OMEGA * 900.0
+    mount = 1.0 / compliance + 1j * OMEGA * 2.0 * 0.02 * np.sqrt(200.0 / compliance)
+    expected = line(force(*LINEAR)) / (1.0 + device / mount)
+    assert abs(line(found) - expected) < 0.04 * abs(expected)
+
+
+def test_a_stiff_joint_without_play_changes_next_to_nothing():
+    whole = force(*LINEAR, FittedTerm("series-compliance", 1e-10, {"loss": 0.2}))
+    np.testing.assert_allclose(whole, force(*LINEAR), atol=0.03 * np.abs(whole).max())
+
+
+def test_play_passes_no_more_than_the_device_and_loses_energy_at_the_flanks():
+    shape = {"gap": 1e-3, "contact": 300.0, "loss": 0.3}
+    played = force(*LINEAR, FittedTerm("backlash", 1.0, shape))
+    assert np.mean(played * MOTION.velocity) > 0.0
+    assert np.mean(np.abs(played) < 0.02 * np.abs(played).max()) > 0.05
+
+
+def test_torn_oil_carries_no_more_than_its_limit():
+    limit = 300.0
+    shape = {"limit": limit, "contact": 300.0, "refill": 1.0, "side": -1.0}
+    cut = force(*LINEAR, FittedTerm("cavitation", 1.0, shape))
+    assert cut.min() > -1.1 * limit
+    assert force(*LINEAR).min() < -2.0 * limit
+
+
+def test_a_clipped_channel_is_flat_at_the_limit_and_untouched_below():
+    whole = force(*LINEAR)
+    limit = 0.5 * np.abs(whole).max()
+    seen = force(*LINEAR, FittedTerm("sensor-clipping", 1.0, {"limit": limit}))
+    np.testing.assert_allclose(seen, np.clip(whole, -limit, limit))
+
+
+@pytest.mark.parametrize("form", [0.0, 1.0, 2.0])
+def test_hysteresis_dissipates_and_saturates(form):
+    small, large = sine_motion(1e-5, 1.0), sine_motion(0.02, 1.0)
+    term = FittedTerm("hysteresis", 50.0, {"yield_displacement": 1e-3, "form": form})
+    assert np.abs(force(term, motion=large)).max() == pytest.approx(50.0, rel=0.02)
+    stiff = force(term, motion=small)
+    assert np.abs(np.ptp(stiff)) < 0.05 * 50.0
+    work = np.mean(force(term, motion=large) * large.velocity)
+    assert work == pytest.approx(50.0 * 4.0 * 0.02 * 1.0, rel=0.15)
+
+
+def test_a_jenkins_slider_is_a_spring_until_it_slips():
+    motion = sine_motion(5e-4, 1.0)
+    found = force(FittedTerm("hysteresis", 50.0, {"yield_displacement": 1e-3}), motion=motion)
+    slope = np.polyfit(motion.displacement, found, 1)[0]
+    assert slope == pytest.approx(50.0 / 1e-3, rel=1e-6)
+
+
+def test_stribeck_falls_to_nothing_at_speed_in_every_form():
+    slow, fast = sine_motion(1e-5, 1.0), sine_motion(0.1, 5.0)
+    for form in (0.0, 1.0, 2.0):
+        term = FittedTerm("stribeck-friction", 10.0, {"stribeck_velocity": 0.01, "form": form})
+        assert np.abs(force(term, motion=slow)).max() == pytest.approx(10.0, rel=0.01)
+        assert np.median(np.abs(force(term, motion=fast))) < 0.01
+
+
+def test_bristles_follow_the_sign_of_speed_when_they_are_short():
+    shape = {"presliding": 1e-6}
+    found = force(FittedTerm("coulomb-friction", 1.0, shape))
+    assert np.mean(found == np.sign(MOTION.velocity)) > 0.5
+    np.testing.assert_allclose(np.median(found * np.sign(MOTION.velocity)), 1.0, atol=1e-6)
+
+
+def test_an_end_stop_acts_only_beyond_its_gap_and_only_outwards():
+    term = FittedTerm("end-stop", 1e5, {"gap": 0.008})
+    found = force(term)
+    inside = np.abs(MOTION.displacement) < 0.008
+    assert not found[inside].any()
+    assert np.all(found * MOTION.displacement >= 0.0)
+    assert found.max() == pytest.approx(1e5 * 0.002, rel=1e-4)
+
+
+def test_effects_leave_their_input_unchanged_and_scale_in_time():
+    motion = harmonic_motion([0.0, -0.01j, 0.001], 2.0, samples=512)
+    slower = harmonic_motion([0.0, -0.01j, 0.001], 1.0, samples=512)
+    for array in (motion.displacement, motion.velocity, motion.acceleration, motion.time):
+        array.flags.writeable = False
+    term = FittedTerm("hysteresis", 3.0, {"yield_displacement": 2e-3})
+    np.testing.assert_array_equal(force(term, motion=motion), force(term, motion=slower))
+
+
+def test_drifts_start_at_nothing_and_settle():
+    found = force(FittedTerm("sensor-drift", 7.0, {"settling_time": 0.01}))
+    assert found[0] == 0.0
+    assert found[-1] == pytest.approx(7.0, rel=1e-6)
+    gain = FittedTerm("sensor-gain", 0.1)
+    np.testing.assert_allclose(force(*LINEAR, gain), 1.1 * force(*LINEAR))
