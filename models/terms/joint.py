@@ -104,7 +104,7 @@ def _step(
     position, speed, slipped = x[0], v[0], 0.0
     stroke, pace_limit = np.max(np.abs(x)), np.max(np.abs(v))
     h = step / inner
-    for _ in range(passes):
+    for turn in range(passes):
         was, was_speed = position - x[0] + slipped, speed
         for i in range(size):
             following = i + 1 if i + 1 < size else 0
@@ -137,6 +137,7 @@ def _step(
                 position += h * speed
             result[i] = total / inner
         moved = abs(position - x[0] + slipped - was)
-        if moved < _SETTLED * stroke and abs(speed - was_speed) < _SETTLED * pace_limit:
+        steady = moved < _SETTLED * stroke and abs(speed - was_speed) < _SETTLED * pace_limit
+        if turn > 0 and steady:
             break
     return result
