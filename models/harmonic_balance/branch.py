@@ -14,6 +14,7 @@ from models.harmonic_balance.newton import (
     Solution,
     newton,
     settle,
+    sharpen,
     tangent,
 )
 from models.harmonic_balance.problem import Problem, SineDrive, make_problem
@@ -126,11 +127,21 @@ def frequency_response(
             found=f"{first:g} Hz",
         )  # fmt: skip
     solutions, signs, complete = _follow(problem, start, 2.0 * np.pi * last, step, most)
-    points = tuple(from_solution(problem, drive, s) for s in solutions)
+    points = tuple(from_solution(problem, drive, _sharpened(problem, s)) for s in solutions)
     stable = None
     if stability:
         stable = np.array([unstable_exponents(p) == 0 for p in points])
     return Branch(points, _folds(points, signs), stable, complete)
+
+
+def _sharpened(problem: Problem, solution: Solution) -> Solution:
+    """Return the solution with sharp kinks, in the plane across the branch."""
+    if not any(law.rubs for law in problem.forces):
+        return solution
+    scale = float(np.linalg.norm(solution.unknowns)) or 1.0
+    way, along = tangent(problem, solution, scale)
+    constraint = Constraint(solution.unknowns, float(np.log(solution.omega)), way, along, scale)
+    return sharpen(problem, solution, constraint=constraint)
 
 
 def _follow(

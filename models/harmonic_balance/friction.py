@@ -22,7 +22,6 @@ from models.checks import Array
 from models.harmonic_balance.problem import Problem, dynamic_stiffness, relative_motion
 
 _CLEAR = 0.05  # of the faster neighbour's speed, that the slower one of a reversal moves at
-_SHARPEST = 0.4  # kink over the change of speed across the zero
 _SOFTEST = 1e-2  # of the top speed: the least slope of the rule that samples are sorted by
 
 
@@ -53,7 +52,14 @@ class Rule:
 
 
 def friction_rule(
-    velocity: Array, friction: Array, limit: float, jump: float, give: float, creep: float
+    velocity: Array,
+    friction: Array,
+    limit: float,
+    jump: float,
+    *,
+    sharpest: float,
+    give: float,
+    creep: float,
 ) -> Rule:
     """Return the rule at all samples of one device, whether they are held or not.
 
@@ -65,6 +71,8 @@ def friction_rule(
         L at rest, N.
     jump : float
         D, m/s.
+    sharpest : float
+        The most that D may be over p + q.
     give : float
         m/s per N: where not zero, v = give l for every held sample.
     creep : float
@@ -87,7 +95,7 @@ def friction_rule(
     p = sign * np.where(forward, velocity, before)
     q = -sign * np.where(forward, after, velocity)
     # Next to sticking the speeds after the zero are small, and the rule has to stay monotonic.
-    kink = np.minimum(jump, _SHARPEST * (p + q))
+    kink = np.minimum(jump, sharpest * (p + q))
     share = sign * friction / (2.0 * limit) + np.where(forward, 0.0, 1.0)
     gap = sign * (p - (p + q + kink) * share + kink * share**2)
     yields = (p + q + kink - 2.0 * kink * share) / (2.0 * limit)
@@ -127,7 +135,10 @@ def rules(
         return [None] * at_rest.size
     kink = kinks(problem, omega)
     return [
-        friction_rule(velocity[j], friction[j], at_rest[j], kink[j], give, problem.creep)
+        friction_rule(
+            velocity[j], friction[j], at_rest[j], kink[j],
+            sharpest=problem.sharpest, give=give, creep=problem.creep,
+        )  # fmt: skip
         if law.rubs
         else None
         for j, law in enumerate(problem.forces)

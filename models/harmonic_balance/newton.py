@@ -9,7 +9,7 @@ import numpy as np
 from models.checks import Array
 from models.harmonic_balance.balance import jacobian, residual
 from models.harmonic_balance.friction import Friction, held_gap, sort_friction
-from models.harmonic_balance.problem import Problem, relative_motion
+from models.harmonic_balance.problem import SHARP, Problem, relative_motion
 
 _ITERATIONS = 40
 _TOLERANCE = 1e-11  # of the balance, over the largest force in it
@@ -17,6 +17,7 @@ _RULE_TOLERANCE = 1e-9  # of the top speed, for samples that are held
 _LEAST_SPEED = 1e-12  # m/s: below it nothing moves
 _FREQUENCY_STEP = 1e-6
 _FINEST_RATIO = 0.9999
+_NEAR = 0.05  # of the displacement: what blunt kinks may have been wrong by
 LADDER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001)
 SHORT_LADDER = (0.03, 0.01, 0.003, 0.001)
 
@@ -131,6 +132,26 @@ def settle(
         if solution.converged:
             x, f, w = solution.unknowns, solution.friction.force, solution.omega
     return newton(problem, x, f, w, constraint=constraint)
+
+
+def sharpen(
+    problem: Problem, solution: Solution, *, constraint: Constraint | None = None
+) -> Solution:
+    """Return a solution with the kinks of its reversals as they are, where that is found near."""
+    if not any(law.rubs for law in problem.forces):
+        return solution
+    best = solution
+    size = float(np.linalg.norm(solution.unknowns))
+    for sharpest in SHARP:
+        trial = newton(
+            replace(problem, sharpest=sharpest), best.unknowns, best.friction.force, best.omega,
+            constraint=constraint,
+        )  # fmt: skip
+        moved = float(np.linalg.norm(trial.unknowns - solution.unknowns))
+        if not trial.converged or moved > _NEAR * size:
+            break
+        best = trial
+    return best
 
 
 def from_stuck(problem: Problem, omega: float) -> Solution:

@@ -17,6 +17,8 @@ from models.harmonic_balance.forces import DeviceForces, sort_forces
 from models.structure import Structure
 
 _CREEP = 1e-12
+BLUNT = 0.4
+SHARP = (0.6, 0.8, 0.95)
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,9 @@ class Problem:
     creep: float
     """m/s per N at which held samples move: too little to matter, but where all stick it chooses
     the position without a mean force."""
+    sharpest: float
+    """The most that the kink of a reversal may be, over the change of velocity across it: as it is
+    up to one; less keeps Newton's method on its way next to sticking."""
 
     @property
     def samples(self) -> int:
@@ -94,7 +99,7 @@ def make_problem(structure: Structure, drive: SineDrive, harmonics: int) -> Prob
     mean = np.append(1.0, np.repeat(np.sinc(k / count), 2))
     return Problem(
         structure, sort_forces(structure), load, to_samples, to_coefficients, slope,
-        to_coefficients / mean[:, None], _CREEP / impedance,
+        to_coefficients / mean[:, None], _CREEP / impedance, BLUNT,
     )  # fmt: skip
 
 

@@ -7,12 +7,14 @@ principle: the phase of det J along the imaginary axis, relative to that of the 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from models.checks import Array
 from models.harmonic_balance.friction import rules
-from models.harmonic_balance.problem import dynamic_stiffness, make_problem, relative_motion
+from models.harmonic_balance.problem import SHARP, dynamic_stiffness, make_problem, relative_motion
 from models.harmonic_balance.steady_state import SteadyState, unknowns_of
 
 Complex = NDArray[np.complex128]
@@ -65,6 +67,7 @@ class _Hill:
         own = state.coefficients.shape[0] - 1
         harmonics = own if rubs else min(own, _SMOOTH_HARMONICS)
         problem = make_problem(state.structure, state.drive, harmonics)
+        problem = replace(problem, sharpest=SHARP[-1])
         unknowns = unknowns_of(state)[:, : problem.samples]
         self.problem, self.omega = problem, state.omega
         count = problem.samples

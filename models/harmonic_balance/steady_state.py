@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models.checks import Array, InputError, number
-from models.harmonic_balance.newton import Solution, from_stuck, newton, settle
+from models.harmonic_balance.newton import Solution, from_stuck, newton, settle, sharpen
 from models.harmonic_balance.problem import Problem, SineDrive, linear_matrix, make_problem
 from models.structure import Structure
 
@@ -150,7 +150,7 @@ def steady_state(
             "steady state", expected=f"to be found at {frequency:g} Hz from the guess",
             found=f"an imbalance of {solution.imbalance:.1e}",
         )  # fmt: skip
-    return from_solution(problem, drive, solution)
+    return from_solution(problem, drive, sharpen(problem, solution))
 
 
 def first_guess(problem: Problem, omega: float) -> Array:
