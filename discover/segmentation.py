@@ -23,6 +23,7 @@ from models.checks import Array, Indices
 
 MIN_WINDOWS = 2
 MAX_BANDS = 5
+_SAME = 1.005  # ratio of coordinates up to which tests count as at the same place
 _AGAINST = 3.0  # nats: a boundary is one to twenty before the data
 
 
@@ -79,22 +80,27 @@ def boundary_cost(windows: int) -> float:
 
 def _run_scores(
     triangles: Sequence[Triangle],
+    coordinate: Array,
     dictionary: Dictionary,
     supports: Sequence[Support],
     shortest: int,
-    rows: int,
 ) -> dict[tuple[int, int], Scored]:
-    """Return the best named structure of each run [i, j) of at least `shortest` windows."""
+    """Return the best named structure of each run [i, j) of at least `shortest` windows.
+
+    Runs end only where the coordinate changes: tests that share it can't lie in two bands.
+    """
     best = {}
     size = len(triangles)
-    for start in range(size):
+    rows = sum(t.rows for t in triangles)
+    changes = np.r_[True, coordinate[1:] > _SAME * coordinate[:-1], True]
+    for start in np.flatnonzero(changes[:-1]).tolist():
         merged: Triangle | None = None
         for stop in range(start + 1, size + 1):
             part = triangles[stop - 1]
             merged = part if merged is None else merge((merged, part))
             first = start == 0 or start >= shortest
             last = stop == size or stop <= size - shortest
-            if stop - start < min(shortest, size) or not (first and last):
+            if stop - start < min(shortest, size) or not (first and last and changes[stop]):
                 continue
             best[start, stop] = score(ProfiledFit(merged, dictionary), supports, rows=rows)[0]
     return best
@@ -183,8 +189,7 @@ def segment(
     order = np.argsort(coordinate, kind="stable")
     sorted_coordinate = coordinate[order]
     triangles = [triangle_of([windows[i]]) for i in order]
-    rows = sum(t.rows for t in triangles)
-    runs = _run_scores(triangles, dictionary, supports, shortest, rows)
+    runs = _run_scores(triangles, sorted_coordinate, dictionary, supports, shortest)
     size = order.size
     most = max(1, min(MAX_BANDS, size // shortest))
     cost = boundary_cost(size)

@@ -13,12 +13,16 @@ from dataclasses import replace
 import numpy as np
 
 from discover.library.dictionary import DELAY, Dictionary
-from discover.regression.support import solve
+from discover.regression.support import ProfiledFit, Support, solve
+from discover.selection.discrepancy import neighbours
+from discover.selection.evidence import score
 from discover.selection.materiality import noise_energy, relative_triangle
+from discover.selection.structures import named_supports
 from discover.selection.variants import rich_weights
 from discover.triangle import WindowRows, triangle_of
 
 _HARMONICS = 5  # higher ones turn too far for a slope
+_CLEAR = 10.0  # nats
 _WORTH = 20.0  # rise of the log likelihood ratio from which a delay is corrected
 
 
@@ -50,6 +54,32 @@ def further_delay(windows: Sequence[WindowRows], dictionary: Dictionary) -> floa
     weights = rich_weights(dictionary)
     coefficients, _ = solve(triangle.columns @ weights, triangle.target)
     return float(coefficients[-1])
+
+
+def delay_holds(
+    windows: Sequence[WindowRows], shifted: Sequence[WindowRows], dictionary: Dictionary
+) -> bool:
+    """Return whether taking a delay out helps the structures themselves, and not just a rich model.
+
+    Memory of the flow turns the force's phase as a delay does. So the best structure of all tests
+    must gain clearly by the shift, and the best ones of neighbouring tests must not lose.
+    """
+    supports = named_supports(dictionary, ())
+    whole = _best(shifted, dictionary, supports) - _best(windows, dictionary, supports)
+    if whole < _CLEAR:
+        return False
+    local = [
+        _best([shifted[i] for i in group], dictionary, supports)
+        - _best([windows[i] for i in group], dictionary, supports)
+        for group in neighbours(np.array([w.speed for w in windows]))
+    ]
+    return float(np.sum(local)) > 0.0
+
+
+def _best(
+    windows: Sequence[WindowRows], dictionary: Dictionary, supports: Sequence[Support]
+) -> float:
+    return score(ProfiledFit(triangle_of(windows), dictionary), supports)[0].log_evidence
 
 
 def _low_harmonics(window: WindowRows) -> WindowRows:

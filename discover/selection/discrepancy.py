@@ -21,7 +21,7 @@ from discover.library.dictionary import Dictionary
 from discover.regression.support import ProfiledFit, Support, SupportFit
 from discover.selection.materiality import relative_triangle
 from discover.triangle import WindowRows
-from models.checks import Array
+from models.checks import Array, Indices
 
 _FEWEST, _MOST = 4, 9  # tests in a group of neighbours
 _QUANTILE = 0.35  # over groups: those that straddle a boundary err by more than the others
@@ -85,6 +85,14 @@ def _share(
     return _Share(excess / safe, np.sqrt(error) / safe, product, square)
 
 
+def neighbours(coordinate: Array) -> list[Indices]:
+    """Return overlapping groups of tests that follow one another along the coordinate."""
+    order = np.argsort(coordinate, kind="stable")
+    length = int(np.clip(order.size // 3, min(_FEWEST, order.size), _MOST))
+    starts = range(0, max(order.size - length, 0) + 1, max(length // 3, 1))
+    return [order[start : start + length] for start in starts]
+
+
 def with_discrepancy(
     windows: Sequence[WindowRows],
     dictionary: Dictionary,
@@ -109,10 +117,7 @@ def with_discrepancy(
     list of WindowRows
         With `discrepancy` in N^2 such that a relative error of one is the found one.
     """
-    order = np.argsort(coordinate, kind="stable")
-    length = int(np.clip(order.size // 3, min(_FEWEST, order.size), _MOST))
-    starts = range(0, max(order.size - length, 0) + 1, max(length // 3, 1))
-    groups = [order[start : start + length] for start in starts]
+    groups = neighbours(coordinate)
     shares = [_share([windows[i] for i in group], dictionary, supports) for group in groups]
     size = max(s.excess.size for s in shares)
     padded = np.array([np.pad(s.excess, (0, size - s.excess.size)) for s in shares])

@@ -182,11 +182,13 @@ def _predictive(
     """
     engine = ProfiledFit(relative_triangle(windows), dictionary)
     fits = [engine.fit(s.fit.support) for s in result.scored]
-    fits = [f for f in fits if f.valid and _identified(f, dictionary)] or fits
+    fits = [f for f in fits if f.valid] or fits
+    low, high = _NOISE_LIMITED
+    noise_share = leave_out(windows, fits).noise_share
+    share = float(np.clip((noise_share - low) / (high - low), 0.0, 1.0))
+    fits = [f for f in fits if _identified(f, dictionary)] or fits
     names = [name_of(f) for f in fits]
     predictions = leave_out(windows, fits)
-    low, high = _NOISE_LIMITED
-    share = float(np.clip((predictions.noise_share - low) / (high - low), 0.0, 1.0))
     parameters = np.array([f.support.parameters for f in fits])
     smallest = predictions.parsimonious(parameters)
     near = [i for i, p in enumerate(parameters) if p <= parameters[smallest] + 2]

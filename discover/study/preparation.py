@@ -12,7 +12,7 @@ from discover.library.dictionary import DELAY, PLAIN, Dictionary, standard_dicti
 from discover.motion_fit import Observation, observe
 from discover.records import Campaign, Finding, Record
 from discover.regression.support import MOST_DELAY, Support, solve
-from discover.selection.delay import further_delay, rich_delay
+from discover.selection.delay import delay_holds, further_delay, rich_delay
 from discover.selection.materiality import relative_triangle
 from discover.selection.structures import FRACTIONAL, POWER, candidate_supports
 from discover.selection.variants import rich_weights, settle_variants
@@ -24,7 +24,7 @@ from models.terms import find_term
 _REVERSAL_SCALE = 0.5
 _TRANSITION_ROUNDS = 2
 _TRANSITIONS = 7
-_DELAY_ROUNDS = 5
+_DELAY_ROUNDS = 4
 _NO_DELAY = 2e-6  # s
 _ORDERS = (0.0, 2.0)
 _EXPONENTS = (0.4, 3.0)
@@ -90,14 +90,7 @@ def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
         exponents=_range(options.exponents, _EXPONENTS),
         delay=delay,
     )
-    delay_found = 0.0
-    for _ in range(_DELAY_ROUNDS):
-        fitted = _fitted_rows(observations, dictionary, delay_found)
-        find = further_delay if delay_found else rich_delay
-        step = find(fitted, dictionary)
-        if abs(step) < _NO_DELAY or abs(delay_found + step) > MOST_DELAY:
-            break
-        delay_found += step
+    fitted, delay_found = _without_delay(observations, dictionary)
     settled, small = settle_variants(fitted, dictionary)
     for _ in range(_TRANSITION_ROUNDS):
         closer = _closer(dictionary, small)
@@ -150,6 +143,24 @@ def _friction(windows: Sequence[WindowRows], dictionary: Dictionary) -> float:
     coefficients, _ = solve(triangle.columns @ weights, triangle.target)
     found = abs(float(coefficients[dictionary.index("coulomb-friction")]))
     return max(found, 1e-3 * float(np.sqrt(np.median([w.power for w in windows]))))
+
+
+def _without_delay(
+    observations: tuple[Observation, ...], dictionary: Dictionary
+) -> tuple[list[WindowRows], float]:
+    """Return the fitted rows with the force channel's delay taken out, and the delay, s."""
+    start = _fitted_rows(observations, dictionary, 0.0)
+    delay = rich_delay(start, dictionary)
+    if abs(delay) < _NO_DELAY or abs(delay) > MOST_DELAY:
+        return start, 0.0
+    rows = _fitted_rows(observations, dictionary, delay)
+    for _ in range(_DELAY_ROUNDS):
+        step = further_delay(rows, dictionary)
+        if abs(step) < _NO_DELAY or abs(delay + step) > MOST_DELAY:
+            break
+        delay += step
+        rows = _fitted_rows(observations, dictionary, delay)
+    return (rows, delay) if delay_holds(start, rows, dictionary) else (start, 0.0)
 
 
 def _closer(dictionary: Dictionary, settled: Dictionary) -> Dictionary | None:

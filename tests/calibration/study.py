@@ -91,7 +91,8 @@ def judge_case(case: Case) -> Outcome | None:
             interval = any(b.interval[0] <= case.place <= b.interval[1] for b in found)
         if found:
             b = found[0]
-            width = float(np.log(b.interval[1] / b.interval[0]) / np.log(b.bracket[1] / b.bracket[0]))
+            spans = [np.log(high / low) for low, high in (b.interval, b.bracket)]
+            width = float(spans[0] / spans[1])
     return Outcome(
         case.seed, case.structure, told, first, listed or first,
         float(np.mean([len(b.equivalents) for b in study.bands])), probability,
