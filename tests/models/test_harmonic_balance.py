@@ -78,7 +78,7 @@ def stable_states(branch: Branch, frequency: float) -> list[SteadyState]:
 def test_agrees_with_long_simulations_on_both_sides_of_each_fold(seed: int) -> None:
     structure, drive = seeded_case(seed)
     branch = frequency_response(
-        structure, drive, (0.12, 0.6), harmonics=80 if seed % 2 else 24, step=0.06, stability=False
+        structure, drive, (0.12, 0.6), harmonics=96 if seed % 2 else 24, step=0.06, stability=False
     )
     assert branch.complete
     assert len(branch.folds) == 2
