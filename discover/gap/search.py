@@ -27,6 +27,8 @@ from models.constitutive import ForceModel
 MOST_ROUNDS = 6
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
+_NEGLIGIBLE = 0.002  # of the misfit before the first round, likewise
+_FEWEST = 20.0  # of chi-square, likewise
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,7 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     names: list[tuple[str, int]] = []
     rounds: list[Round] = []
     tried: set[str] = set()
+    at_first = 0.0
     while True:
         present = {t.id for t in fit.model.terms}
         open_effects = [e for e in effects if e not in present and e not in tried]
@@ -137,7 +140,8 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
             return Search(start, tuple(rounds), contest)
         mended = fits.get(name) or _mended(fitted, fit, contest, name)
         gained = fit.chi2 - mended.chi2
-        if gained < max(_TOO_LITTLE * contest.excess, 0.0):
+        at_first = max(at_first, contest.excess)
+        if gained < max(_TOO_LITTLE * contest.excess, _NEGLIGIBLE * at_first, _FEWEST):
             return Search(start, tuple(rounds), contest)
         first = len(fit.model.terms)
         mended, dropped, names = _without_superfluous(fitted, mended, names)
