@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from tests.calibration.generator import Case, Test
 
 TELLING = 10.0
-_ORDERS = np.linspace(0.02, 1.98, 99)
+_ORDERS = np.linspace(0.0, 2.0, 51)  # where the search for the best order starts
 
 
 def _columns(test: Test, names: tuple[str, ...], order: float) -> np.ndarray:
@@ -42,13 +43,20 @@ def expected_gap(case: Case, rival: str) -> float:
     """Return the nats by which a rival structure falls short of the noise-free force."""
     force = np.concatenate([_whiten(t, t.clean) for t in case.tests])
     names = _RIVALS[rival]
-    best = np.inf
-    for order in _ORDERS if rival == "FOIM" else (1.0,):
+
+    def gap(order: float) -> float:
         columns = np.concatenate([_whiten(t, _columns(t, names, order)) for t in case.tests])
         scale = np.linalg.norm(columns, axis=0)
         misfit = force - columns / scale @ np.linalg.lstsq(columns / scale, force, rcond=1e-12)[0]
-        best = min(best, 0.5 * float(misfit @ misfit))
-    return best
+        return 0.5 * float(misfit @ misfit)
+
+    if rival != "FOIM":
+        return gap(1.0)
+    values = [gap(order) for order in _ORDERS]
+    best = int(np.argmin(values))
+    around = _ORDERS[max(best - 1, 0)], _ORDERS[min(best + 1, _ORDERS.size - 1)]
+    refined = minimize_scalar(gap, bounds=around, method="bounded", options={"xatol": 1e-9})
+    return min(float(refined.fun), values[best])
 
 
 def separable(case: Case) -> bool:
