@@ -1,4 +1,4 @@
-"""``make calibration``: the seeded study on random devices, its table kept beside the benchmarks."""
+"""``make calibration``: the study on random devices, its table kept beside the benchmarks."""
 
 from __future__ import annotations
 
