@@ -145,6 +145,20 @@ def motion_gap(model: Model, campaign: Campaign) -> MotionGap:
         Without a carried system or any record with its input, or for a term that has no rule in
         time.
     """
+    system, driven = require_system(campaign)
+    records = tuple(_one(model, record, system) for record in driven)
+    left = len(campaign.records) - len(driven)
+    return MotionGap(model.name, system, records, _findings(records, left, system.input))
+
+
+def require_system(campaign: Campaign) -> tuple[CarriedSystem, list[Record]]:
+    """Return what is carried and the records that drive it.
+
+    Raises
+    ------
+    InputError
+        Where there is no carried system, or no record with its input and a displacement.
+    """
     system = campaign.system
     if system is None:
         raise InputError(
@@ -158,9 +172,21 @@ def motion_gap(model: Model, campaign: Campaign) -> MotionGap:
             f"column {column!r}", expected="in a record with displacement", found="in none",
             where=campaign.source,
         )  # fmt: skip
-    records = tuple(_one(model, record, system) for record in driven)
-    left = len(campaign.records) - len(driven)
-    return MotionGap(model.name, system, records, _findings(records, left, column))
+    return system, driven
+
+
+def motion_before_and_after(campaign: Campaign, before: Model, after: Model) -> dict[str, Any]:
+    """Return the part ``motion`` of ``gap.json``: a model and the mended one, by their motion.
+
+    An effect that has no rule in time (a record's filter, play in a joint) leaves ``after`` None,
+    with the reason.
+    """
+    result: dict[str, Any] = {"before": motion_gap(before, campaign).to_dict()}
+    try:
+        result["after"] = motion_gap(after, campaign).to_dict()
+    except InputError as error:
+        result["after"], result["reason"] = None, str(error)
+    return result
 
 
 def _one(model: Model, record: Record, system: CarriedSystem) -> RecordMotion:

@@ -37,22 +37,33 @@ def gap(
         str | None,
         typer.Option("--effects", metavar="ID,ID,…", help="Name only these effects."),
     ] = None,
+    on: Annotated[
+        str,
+        typer.Option(
+            "--on",
+            metavar="force|motion",
+            help="motion: besides, move the campaign's [system] with the model, as it is and mended.",
+        ),
+    ] = "force",
     out: options.Out = None,
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
 ) -> int:
     """Find where a model and the records disagree, name what is missing, and add it."""
+    one_of("quantity", on, ("force", "motion"), where="--on")
     only = options.identifiers(effects, where="--effects")
     folder = result_folder("gap", campaign, out)
 
     # Loaded here: --help and complaints about options need no numerics.
     from discover.cli.named_model import named_model
     from discover.gap import close_gap, term_ids
+    from discover.motion_gap import motion_before_and_after, require_system
     from discover.naming.candidates import EFFECTS
     from discover.readers import read_campaign
     from discover.report.document import json_text
     from discover.report.gap import gap_figures, gap_lines, gap_report
+    from models.constitutive import ForceModel
 
     for name in only or ():
         one_of("effect", name, EFFECTS, where="--effects")
@@ -60,11 +71,17 @@ def gap(
         term_ids(model)
     with working(f"Reading {campaign}"):
         measured = read_campaign(campaign)
+    if on == "motion":
+        require_system(measured)
     chosen = model if model.startswith(_FIT) else named_model(model, measured.device)
     with working(f"Comparing {len(measured.records)} records"):
         found = close_gap(measured, chosen, fixed=fixed, effects=only, seed=seed, jobs=jobs)
+    document = found.to_dict()
+    if on == "motion":
+        with working("Moving the carried system"):
+            before = ForceModel(found.baseline, "baseline")
+            document["motion"] = motion_before_and_after(measured, before, found.model)
     with working("Drawing"):
-        document = found.to_dict()
         figures = gap_figures(document, found.figure_data)
         invocation: Invocation = context.obj
         page = gap_report(

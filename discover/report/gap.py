@@ -18,6 +18,7 @@ from discover.plots.gap import (
     telling_records,
 )
 from discover.report.environment import render
+from discover.report.motion import motion_lines
 from discover.report.verdict import named_line
 from discover.report.words import listed, percent, probability, term_name
 
@@ -52,6 +53,8 @@ def gap_lines(document: Mapping[str, Any]) -> list[str]:
     )
     if document.get("shape"):
         lines.append(f"Left over: {document['shape']}.")
+    if document.get("motion"):
+        lines += motion_lines(document["motion"])
     return lines
 
 

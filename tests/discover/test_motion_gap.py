@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import functools
+import json
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from discover.motion_gap import motion_gap
+from discover.cli import main
+from discover.motion_gap import motion_before_and_after, motion_gap
 from discover.records import Campaign, CarriedSystem, Record
+from discover.report.motion import motion_lines
 from models.checks import InputError
 from models.constitutive import FittedTerm, ForceModel
 
@@ -15,6 +20,7 @@ MASS, STIFFNESS = 250.0, 2e4
 INERTANCE, VISCOUS, QUADRATIC = 70.0, 300.0, 800.0
 
 
+@functools.cache
 def shaken(*, noise=0.0, acts="base_acceleration", negative=0.0, held_out=False, seed=3):
     """A mass on a spring with an integer-order device, under a random base acceleration."""
     rng = np.random.default_rng(seed)
@@ -132,3 +138,52 @@ def test_what_is_missing_is_named():
     answer = motion_gap(model(), Campaign("t", (record, bare), system=system))
     assert len(answer.records) == 1
     assert any("1 records have no base_acceleration" in f.text for f in answer.findings)
+
+
+def written(folder, *, system=True):
+    """A campaign on disk of two shaken records, with the carried system."""
+    folder.mkdir()
+    lines = ['title = "shaken"']
+    for seed in (3, 4):
+        record = shaken(seed=seed, noise=2.0)
+        table = np.column_stack(
+            [record.time, record.displacement, record.force, record.inputs["base_acceleration"]]
+        )
+        header = "time [s],displacement [m],force [N],base_acceleration [m/s^2]"
+        np.savetxt(folder / f"{seed}.csv", table, delimiter=",", header=header, comments="")
+        lines += ["[[records]]", f'file = "{seed}.csv"', f"held_out = {str(seed == 4).lower()}"]
+    if system:
+        lines += ["[system]", 'mass = "250 kg"', 'stiffness = "20 kN/m"']
+        lines += ['input = "base_acceleration"']
+    (folder / "campaign.toml").write_text("\n".join(lines))
+    return folder
+
+
+def test_the_gap_on_motion_closes_with_the_effect_that_was_missing(tmp_path, capsys):
+    folder = written(tmp_path / "campaign")
+    arguments = ["--model", "fit:inertia,viscous-damping", "--on", "motion"]
+    assert main(["gap", str(folder), *arguments, "-o", str(tmp_path / "out"), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["rounds"][0]["effect"] == "quadratic-damping"
+    before, after = document["motion"]["before"], document["motion"]["after"]
+    assert before["gap_percent"] > 3.0
+    assert after["gap_percent"] < 0.3 * before["gap_percent"]
+    assert after["held_out_gap_percent"] < 0.3 * before["held_out_gap_percent"]
+
+
+def test_a_campaign_without_a_system_is_refused_at_once(tmp_path, capsys):
+    folder = written(tmp_path / "campaign", system=False)
+    arguments = ["--model", "fit:inertia", "--on", "motion", "-o", str(tmp_path / "out")]
+    assert main(["gap", str(folder), *arguments]) == 2
+    assert "carried system must be given as [system]" in capsys.readouterr().err
+
+
+def test_an_effect_without_a_rule_in_time_is_said():
+    system = CarriedSystem(MASS, STIFFNESS, "base_acceleration")
+    campaign = Campaign("t", (shaken(),), system=system)
+    late = ForceModel((*model().terms, FittedTerm("series-compliance", 1e-7)))
+    answer = motion_before_and_after(campaign, model(), late)
+    assert answer["after"] is None
+    assert "series-compliance" in answer["reason"]
+    lines = motion_lines(answer)
+    assert "can't be moved" in lines[0]
