@@ -42,7 +42,7 @@ def gap(
         typer.Option(
             "--on",
             metavar="force|motion",
-            help="motion: besides, move the campaign's [system] with the model, as it is and mended.",
+            help="motion: besides, move the [system] with the model, as it is and mended.",
         ),
     ] = "force",
     out: options.Out = None,
