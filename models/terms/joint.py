@@ -16,6 +16,7 @@ from models.motion import Motion
 _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
 _SETTLED = 3e-3
+_SHORT = 2048  # samples of one cycle; longer periods of many cycles settle within one
 _MOST_INNER = 60
 _HARDEST = 8.0
 _SLOW = 0.01  # of the greatest speed, over which dry friction reverses in time stepping
@@ -84,10 +85,11 @@ def through_joint(force: Array, motion: Motion, joint: Joint) -> Array:
     inner = int(np.clip(np.ceil(natural * motion.step / _STEP), 1, _MOST_INNER))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
     damping = 2.0 * joint.loss * np.sqrt(stiffness * mass)
+    passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, _SLOW * top, stiffness,
         damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.hardening,
-        joint.hardens, _PASSES if motion.periodic else 1,
+        joint.hardens, passes,
     )
     return np.asarray(force + carried - rigid)
 
