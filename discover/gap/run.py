@@ -111,7 +111,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
     final_gap = _seen(baseline, final)
     verdict = _verdict(found, final_gap, noise)
     unexplained = float(np.sqrt(max(final_gap**2 - noise**2, 0.0)))
-    shape = "" if verdict in ("agrees", "closed") else where_in_words(left)
+    shape = "" if verdict in ("agrees", "closed") else where_in_words(left).rstrip(".")
     records = tuple(
         RecordGap(
             r.observation.file, r.observation.held_out, now.noise_percent, was.percent, now.percent
