@@ -74,12 +74,12 @@ def impulse_memory(
     weights, rates = exponential_sum(beta, step, max(horizon, 2.0 * step) + step, reachable)
     z = rates * step
     decay = np.exp(-z)
-    mean = _phi1(z)  # integral of exp(-z s) over s in [0, 1]
+    mean = phi_one(z)  # integral of exp(-z s) over s in [0, 1]
     if order > 1.0:
         change = -weights * z * mean  # of the kernel itself over a step
     else:
         change = weights * step * mean  # the kernel is the antiderivative of the sum
-    ramped = _phi2(z)  # integral of (1 - s) exp(-z s): the weight of the value at the near end
+    ramped = phi_two(z)  # integral of (1 - s) exp(-z s): the weight of the value at the near end
     new = step * ramped
     old = step * (mean - ramped)
     gain = change * decay
@@ -87,12 +87,14 @@ def impulse_memory(
     return ImpulseMemory(order, recent, far0, bank, gain, rates)
 
 
-def _phi1(z: Array) -> Array:
+def phi_one(z: Array) -> Array:
+    """Return the integral of exp(-z s) over s in [0, 1]."""
     safe = np.where(z < 1e-8, 1.0, z)
     return np.where(z < 1e-8, 1.0 - z / 2.0, -np.expm1(-safe) / safe)
 
 
-def _phi2(z: Array) -> Array:
+def phi_two(z: Array) -> Array:
+    """Return the integral of (1 - s) exp(-z s) over s in [0, 1]."""
     small = z < 0.1
     safe = np.where(small, 1.0, z)
     series = np.zeros_like(z)

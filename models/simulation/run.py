@@ -17,12 +17,16 @@ from models.simulation.elements import (
     Elements,
 )
 from models.simulation.load import Load
-from models.simulation.memory import ImpulseMemory, impulse_memory
+from models.simulation.recall import Memories, Recall, memories
 from models.simulation.response import EnergyBalance, PeriodicPast
 from models.simulation.stepper import advance
 from models.structure import Structure
 
 _CHUNK = 1 << 16  # steps between evaluations of the load: bounds the memory that it takes
+_START_SHARE = 64  # of the steps, at most, are a graded start
+_SHORTEST_START = 4 * _START_SHARE
+_LONGEST_START = 4096  # steps
+_LEVELS = 12  # halvings of the step towards the start
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,72 @@ class Run:
     """Changes of band."""
 
 
+class _Machine:
+    """The state of a simulation, and the compiled loop that carries it on."""
+
+    def __init__(
+        self, structure: Structure, elements: Elements, load: Load, x: Array, v: Array
+    ) -> None:
+        devices = len(structure.devices)
+        self.structure, self.elements, self.load = structure, elements, load
+        self.pattern = load.vector(structure.mass)
+        ends = [[m.upper, -1 if m.lower is None else m.lower] for m in structure.devices]
+        self.ends = np.array(ends, dtype=np.int64).reshape(-1, 2)
+        self.x, self.v = x.copy(), v.copy()
+        self.rows = elements.first[:-1].copy()
+        self.cycle = np.zeros((devices, 2))
+        self.reversal = np.full(devices, -1, dtype=np.int64)
+        self.impulse = np.zeros((devices, 4))
+        self.ledger = np.zeros(6)
+        self.counts = np.zeros(4, dtype=np.int64)
+
+    def go(
+        self, recall: Recall, step: float, steps: int, *, start: float, every: int, out: Outputs
+    ) -> None:
+        """Go `steps` steps on from time `start`, s, keeping every `every`-th state in `out`."""
+        structure, elements = self.structure, self.elements
+        self.counts[3] = recall.age
+        for first in range(0, steps, _CHUNK):
+            count = min(_CHUNK, steps - first)
+            times = start + step * np.arange(first, first + count + 1, dtype=np.float64)
+            advance(
+                structure.mass, structure.damping, structure.stiffness, structure.directions,
+                self.ends, self.pattern, step,
+                np.ascontiguousarray(self.load.history(times), dtype=np.float64),
+                elements.first, elements.table, elements.curve_first, elements.curves,
+                elements.edges, elements.coordinate,
+                recall.scalars, recall.place, recall.mode_first, recall.bank,
+                self.x, self.v, recall.w, recall.modes, self.rows, self.cycle, self.reversal,
+                self.impulse, self.ledger, self.counts,
+                every, out.displacement, out.velocity, out.device_force,
+            )  # fmt: skip
+
+    def last_force(self, step: float) -> Array:
+        """Return the devices' forces now, (q,) N, from the last two steps."""
+        return np.asarray((3.0 * self.impulse[:, 0] - self.impulse[:, 1]) / (2.0 * step))
+
+    def first_force(self, step: float) -> Array:
+        """Return the devices' forces at the start, (q,) N, from the first two steps."""
+        return np.asarray((3.0 * self.impulse[:, 2] - self.impulse[:, 3]) / (2.0 * step))
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """States that are kept."""
+
+    displacement: Array
+    """(N, n) m."""
+    velocity: Array
+    """(N, n) m/s."""
+    device_force: Array
+    """(N, q) N."""
+
+
+def _outputs(structure: Structure, kept: int) -> Outputs:
+    size, devices = structure.size, len(structure.devices)
+    return Outputs(np.empty((kept, size)), np.empty((kept, size)), np.zeros((kept, devices)))
+
+
 def run(
     structure: Structure,
     elements: Elements,
@@ -57,89 +127,103 @@ def run(
     kernel_error: float,
 ) -> Run:
     """Return `steps` steps from the given state, every `every`-th kept."""
-    directions = structure.directions
-    devices, size = directions.shape
-    memories = tuple(
-        impulse_memory(term.order, step, step * steps, error=kernel_error)
-        for term in elements.fractional
-    )
-    x, v = displacement.copy(), velocity.copy()
-    w, modes, scalars = _memory_state(structure, elements, memories, v, step, past)
-    place = np.array([[t.device, t.band] for t in elements.fractional], dtype=np.int64)
-    mode_first = np.concatenate([[0], np.cumsum([m.rates.size for m in memories])]).astype(np.int64)
-    bank = np.concatenate([m.bank for m in memories] or [np.zeros((3, 0))], axis=1)
-    rows = elements.first[:-1].copy()
-    cycle = np.zeros((devices, 2))
-    reversal = np.full(devices, -1, dtype=np.int64)
-    impulse = np.zeros((devices, 4))
-    ledger = np.zeros(6)
-    counts = np.array([0, 0, 0, 2 if past is not None else 0], dtype=np.int64)
-    kept = steps // every + 1
-    out_x, out_v = np.empty((kept, size)), np.empty((kept, size))
-    out_f = np.zeros((kept, devices))
-    at_start = _stored(structure, elements, rows, x, v)
+    machine = _Machine(structure, elements, load, displacement, velocity)
+    at_start = _stored(structure, elements, machine.rows, displacement, velocity)
     initial = at_start[0] + at_start[1]
-    pattern = load.vector(structure.mass)
-    ends = np.array(
-        [[m.upper, -1 if m.lower is None else m.lower] for m in structure.devices], dtype=np.int64
-    ).reshape(-1, 2)
-    for start in range(0, steps, _CHUNK):
-        count = min(_CHUNK, steps - start)
-        values = load.history(step * np.arange(start, start + count + 1, dtype=np.float64))
-        advance(
-            structure.mass, structure.damping, structure.stiffness, directions, ends, pattern,
-            step, np.ascontiguousarray(values, dtype=np.float64),
-            elements.first, elements.table, elements.curve_first, elements.curves,
-            elements.edges, elements.coordinate,
-            scalars, place.reshape(-1, 2), mode_first, bank,
-            x, v, w, modes, rows, cycle, reversal, impulse, ledger, counts,
-            every, out_x, out_v, out_f,
-        )  # fmt: skip
+    held = memories(structure, elements, step, step * steps, kernel_error)
+    kept = steps // every + 1
+    out = _outputs(structure, kept)
+    done = 0
+    if past is not None:
+        recall = held.in_steady_state(past)
+    elif steps >= _SHORTEST_START and _starts_steeply(structure, elements):
+        # A fixed share of the time, so that halving the step halves every step of it.
+        done = min(1 << ((steps // _START_SHARE).bit_length() - 1), _LONGEST_START)
+        recall = _graded_start(machine, held, step, done, every, out, kernel_error)
+    else:
+        recall = held.at_rest(velocity)
+    machine.go(recall, step, steps - done, start=step * done, every=every, out=out)
     if steps % every == 0:
-        out_x[-1], out_v[-1] = x, v
-        out_f[-1] = (3.0 * impulse[:, 0] - impulse[:, 1]) / (2.0 * step)
-    if steps > 1:
-        out_f[0] = (3.0 * impulse[:, 2] - impulse[:, 3]) / (2.0 * step)
-    kinetic, potential = _stored(structure, elements, rows, x, v)
-    work_in, viscous, fractional, curved, friction, switching = (float(e) for e in ledger)
+        out.displacement[-1], out.velocity[-1] = machine.x, machine.v
+        out.device_force[-1] = machine.last_force(step)
+    if steps > 1 and not done:
+        out.device_force[0] = machine.first_force(step)
+    kinetic, potential = _stored(structure, elements, machine.rows, machine.x, machine.v)
+    ledger = [float(e) for e in machine.ledger]
     turnover = sum(abs(e) for e in ledger) + abs(initial) + abs(kinetic) + abs(potential)
+    work_in, viscous, fractional, curved, friction, switching = ledger
     energy = EnergyBalance(
         work_in, initial, kinetic, potential, viscous, fractional, curved, friction, switching,
         turnover,
     )  # fmt: skip
     time: Array = step * every * np.arange(kept, dtype=np.float64)
-    return Run(time, out_x, out_v, out_f, energy, int(counts[2]))
+    switches = int(machine.counts[2])
+    return Run(time, out.displacement, out.velocity, out.device_force, energy, switches)
 
 
-def _memory_state(
-    structure: Structure,
-    elements: Elements,
-    memories: tuple[ImpulseMemory, ...],
-    velocity: Array,
+def _starts_steeply(structure: Structure, elements: Elements) -> bool:
+    """Tell whether a fractional term of order above one moves something without inertia.
+
+    The velocity then starts as a power of time below one, and equal steps lose their order.
+    """
+    if not any(1.0 < t.order for t in elements.fractional):
+        return False
+    inertia = np.array(structure.mass)
+    for direction, row in zip(structure.directions, elements.first[:-1], strict=True):
+        inertia += elements.table[row, INERTANCE] * np.outer(direction, direction)
+    return bool(np.linalg.matrix_rank(inertia) < structure.size)
+
+
+def _graded_start(
+    machine: _Machine,
+    held: Memories,
     step: float,
-    past: PeriodicPast | None,
-) -> tuple[Array, Array, Array]:
-    """Return recent speeds (m, 3), modes two steps back, and each memory's scalars (m, 6)."""
-    w = np.zeros((len(memories), 3))
-    scalars = np.zeros((len(memories), 6))
-    modes = [np.zeros(0)]
-    for i, (term, memory) in enumerate(zip(elements.fractional, memories, strict=True)):
-        direction = structure.directions[term.device]
-        at_start = float(direction @ velocity)
-        zero = at_start if memory.from_rest and past is None else 0.0
-        scalars[i] = (term.coefficient, *memory.recent, memory.first, zero)
-        if past is None:
-            w[i, 0] = at_start - zero
-            modes.append(np.zeros(memory.rates.size))
-            continue
-        w[i] = past.velocity(-step * np.arange(3)) @ direction
-        harmonics = past.rates[1:]
-        turn = 1j * harmonics * np.exp(-2j * harmonics * step)
-        response = (turn * (past.coefficients[1:] @ direction)) / np.add.outer(
-            memory.rates, 1j * harmonics
-        )
-        modes.append(memory.gain * response.sum(axis=1).real)
-    return w, np.concatenate(modes), scalars
+    done: int,
+    every: int,
+    out: Outputs,
+    kernel_error: float,
+) -> Recall:
+    """Go through the first `done` steps with ever shorter ones towards the start.
+
+    Stretch after stretch, each twice as long as all before it, with twice the step. Returns the
+    memories at its end, for `step`.
+    """
+    structure, elements = machine.structure, machine.elements
+    time: list[Array] = []
+    moved: list[Array] = []
+    speeds: list[Array] = []
+    forces: list[Array] = []
+    now = 0.0
+    recall = memories(
+        structure, elements, step / 2**_LEVELS, step * done, kernel_error
+    ).at_rest(machine.v)
+    for level in range(_LEVELS, -1, -1):
+        own_step = step / 2**level
+        steps = done if level == _LEVELS else done // 2
+        if level < _LEVELS:
+            own = memories(structure, elements, own_step, step * done, kernel_error)
+            recall = own.after(np.append(np.concatenate(time), now),
+                               np.vstack([*speeds, machine.v]))  # fmt: skip
+            machine.impulse[:, :2] *= 2.0  # as impulses of this stretch's steps
+        stretch = _outputs(structure, steps)
+        machine.counts[0] = machine.counts[1] = 0
+        machine.go(recall, own_step, steps, start=now, every=1, out=stretch)
+        if level == _LEVELS:
+            stretch.device_force[0] = machine.first_force(own_step)
+        time.append(now + own_step * np.arange(steps))
+        moved.append(stretch.displacement)
+        speeds.append(stretch.velocity)
+        forces.append(stretch.device_force)
+        now = step * done / 2**level
+    times = np.concatenate(time)
+    wanted = step * np.arange(0, done, every)
+    at = np.searchsorted(times, wanted - 0.5 * step / 2**_LEVELS)
+    count = wanted.size
+    out.displacement[:count] = np.concatenate(moved)[at]
+    out.velocity[:count] = np.concatenate(speeds)[at]
+    out.device_force[:count] = np.concatenate(forces)[at]
+    machine.counts[0], machine.counts[1] = done, count
+    return held.after(np.append(times, now), np.vstack([*speeds, machine.v]))
 
 
 def _stored(

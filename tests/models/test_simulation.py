@@ -101,18 +101,39 @@ def test_second_order_from_the_first_step_on(p: int, q: int) -> None:
     assert order >= 1.9
 
 
-@pytest.mark.parametrize("order", [1.8, 1.95])
-def test_fractional_oscillator_without_mass(order: float) -> None:
-    # D^a x + x = 0: the device alone carries the spring; x = E_a(-t^a) + v0 t E_(a,2)(-t^a).
-    structure = Structure([[0.0]], [[0.0]], [[1.0]], (Mount(fractional(1.0, order)),))
-    response = simulate(
-        structure, step=2 * CYCLE / 10_000, duration=2 * CYCLE, displacement=1.0, velocity=0.5,
-        estimate_error=False,
-    )  # fmt: skip
-    t = response.time[1:]
+def massless(order: float) -> Structure:
+    """D^a x + x = 0: the device alone carries the spring."""
+    return Structure([[0.0]], [[0.0]], [[1.0]], (Mount(fractional(1.0, order)),))
+
+
+def massless_motion(order: float, t: NDArray[np.float64]) -> NDArray[np.float64]:
+    """From x = 1, v = 0.5: E_a(-t^a) + 0.5 t E_(a,2)(-t^a)."""
     z = -(t**order)
-    exact = np.real(mittag_leffler(z, order, 1.0) + 0.5 * t * mittag_leffler(z, order, 2.0))
+    return np.real(mittag_leffler(z, order, 1.0) + 0.5 * t * mittag_leffler(z, order, 2.0))
+
+
+@pytest.mark.parametrize("order", [1.1, 1.2, 1.5, 1.8, 1.95])
+@pytest.mark.parametrize(("cycles", "richardson"), [(2, False), (20, True)])
+def test_fractional_oscillator_without_mass(order: float, cycles: int, richardson: bool) -> None:
+    response = simulate(
+        massless(order), step=cycles * CYCLE / 10_000, duration=cycles * CYCLE, displacement=1.0,
+        velocity=0.5, estimate_error=False, richardson=richardson,
+    )  # fmt: skip
+    exact = massless_motion(order, response.time[1:])
     assert np.abs(response.displacement[1:, 0] - exact).max() <= 1e-6
+    assert abs(response.energy.residual) <= 1e-10
+
+
+def test_second_order_without_mass_and_whatever_is_kept() -> None:
+    errors = []
+    for n in (512, 1024, 2048, 4096):
+        response = simulate(
+            massless(1.3), step=2 * CYCLE / n, duration=2 * CYCLE, displacement=1.0, velocity=0.5,
+            keep_every=2, estimate_error=False,
+        )  # fmt: skip
+        exact = massless_motion(1.3, response.time[1:])
+        errors.append(np.abs(response.displacement[1:, 0] - exact).max())
+    assert np.log2(errors[0] / errors[-1]) / 3.0 >= 1.9
 
 
 def test_whole_orders_equal_spring_damper_and_inerter() -> None:
