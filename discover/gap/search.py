@@ -14,6 +14,7 @@ from discover.naming.fit import (
     ModelFit,
     fit_model,
     free_parameters,
+    inverse,
     value_of,
     whole_model,
     with_values,
@@ -99,9 +100,7 @@ def _left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
         span = slice(start, start + r.target.size)
         start = span.stop
         own = fit.tangents[:, span]
-        rest = np.linalg.pinv(
-            fit.tangents @ fit.tangents.T - own @ own.T, rcond=1e-12, hermitian=True
-        )
+        rest = inverse(fit.tangents @ fit.tangents.T - own @ own.T)
         shift: Array = -rest @ (own @ fit.residual[span])
         limit = 0.5 * np.abs(values)
         shape = np.array([p.shape is not None for p in fit.parameters])

@@ -138,6 +138,14 @@ def _bounded(model: ForceModel, parameters: Sequence[Parameter], values: Array) 
     return result
 
 
+def inverse(gram: Array) -> Array:
+    """Return the pseudo-inverse of a Gram matrix whose columns differ widely in size."""
+    scale = np.sqrt(np.maximum(np.diagonal(gram), 0.0))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    outer = np.outer(scale, scale)
+    return np.asarray(np.linalg.pinv(gram / outer, rcond=1e-12, hermitian=True) / outer)
+
+
 def fit_model(
     rows: Sequence[RecordRows],
     model: ForceModel,
@@ -183,6 +191,5 @@ def fit_model(
         if not gained:
             break
         tangents = _tangents(rows, model, parameters, at)
-    gram = tangents @ tangents.T
-    covariance: Array = np.asarray(np.linalg.pinv(gram, rcond=1e-12, hermitian=True), dtype=float)
+    covariance = inverse(tangents @ tangents.T)
     return ModelFit(model, chi2, target - at, tangents, tuple(parameters), covariance)
