@@ -305,5 +305,8 @@ def _name(column: Column, x: str, v: str, a: str) -> str:
     shape = dict(column.shape)
     if column.id in _NAMES:
         return _NAMES[column.id](x, v, a, shape)
-    values = ", ".join(f"{k}={value:.4g}" for k, value in shape.items())
+    usual = {p.name: p.default for p in find_term(column.id).parameters if not p.scaled_by}
+    usual |= {p.name: 0.0 for p in find_term(column.id).parameters if p.default == 0.0}
+    told = {k: value for k, value in shape.items() if usual.get(k) != value}
+    values = ", ".join(f"{k}={value:.4g}" for k, value in told.items())
     return f"{column.id}[{values}]({x})" if values else f"{column.id}({x})"
