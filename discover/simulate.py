@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from discover._version import __version__
+from discover.header import document_header
 from discover.motion_fit import Observation
 from discover.naming.forces import model_force
 from discover.records import Campaign, Finding
@@ -94,10 +94,9 @@ class ForceComparison:
         """Return the document ``simulation.json``."""
         accuracies = [r.accuracy for r in self.models[0].records]
         return {
-            "schema": "inerter.simulation/1",
-            "version": __version__,
-            "seed": self.seed,
-            "campaign": {"title": self.title, "hash": self.content_hash},
+            **document_header(
+                "simulation", seed=self.seed, title=self.title, content_hash=self.content_hash
+            ),
             "noise_percent": noise_percent(accuracies),
             "ranked_on": "held-out records" if _any_held_out(self.models) else "all records",
             "models": [m.to_dict() for m in self.models],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from discover._version import __version__
+from discover.header import document_header
 from discover.record_checks import RecordCheck
 from discover.records import Finding
 
@@ -51,10 +51,9 @@ class DataCheck:
     def to_dict(self) -> dict[str, Any]:
         """Return the document ``check.json``."""
         return {
-            "schema": "inerter.check/1",
-            "version": __version__,
-            "seed": self.seed,
-            "campaign": {"title": self.title, "hash": self.content_hash},
+            **document_header(
+                "check", seed=self.seed, title=self.title, content_hash=self.content_hash
+            ),
             "passed": self.passed,
             "records": [r.to_dict() for r in self.records],
             "findings": [f.to_dict() for f in self.findings],

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from discover._version import __version__
 from discover.figure_data import GapFigureData
 from discover.gap.where import Place
+from discover.header import document_header
 from discover.records import Finding
 from models.constitutive import FittedTerm, SegmentedModel
 
@@ -138,12 +138,9 @@ class Gap:
     """For pictures."""
 
     def _header(self, name: str) -> dict[str, Any]:
-        return {
-            "schema": f"inerter.{name}/1",
-            "version": __version__,
-            "seed": self.seed,
-            "campaign": {"title": self.title, "hash": self.content_hash},
-        }
+        return document_header(
+            name, seed=self.seed, title=self.title, content_hash=self.content_hash
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document ``gap.json``."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from discover._version import __version__
 from discover.dean import DeanCheck
 from discover.figure_data import StudyFigureData
+from discover.header import document_header
 from discover.next_test import NextTest
 from discover.records import Finding
 from models.constitutive import FittedTerm, SegmentedModel
@@ -184,12 +184,9 @@ class Study:
     """For pictures."""
 
     def _header(self, name: str) -> dict[str, Any]:
-        return {
-            "schema": f"inerter.{name}/1",
-            "version": __version__,
-            "seed": self.seed,
-            "campaign": {"title": self.title, "hash": self.content_hash},
-        }
+        return document_header(
+            name, seed=self.seed, title=self.title, content_hash=self.content_hash
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document ``study.json``."""
