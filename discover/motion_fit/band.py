@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.ndimage import median_filter
+from scipy.special import gammaincinv
 
 from discover.motion_fit.noise import power_density
 from discover.motion_fit.observation import Lines, Observation, Window
@@ -24,13 +25,15 @@ _LINES_PER_WINDOW = 40
 _MAX_WINDOWS = 16
 
 
-def smooth(density: Array) -> Array:
+def smooth(density: Array, averaged: int = 1) -> Array:
     """Return a power density's running level: the median over half a percent of the bins.
 
-    A median does not spill over the edge of an excited band, as a mean does.
+    A median does not spill over the edge of an excited band, as a mean does. Over the mean it is
+    that of a gamma law, whose shape is the number of spectra that were `averaged`.
     """
     size = 2 * max(density.size // 400, 4) + 1
-    return np.asarray(median_filter(density, size=size, mode="nearest") / np.log(2.0))
+    level = median_filter(density, size=size, mode="nearest")
+    return np.asarray(level * averaged / gammaincinv(averaged, 0.5))
 
 
 def floor_of(frequencies: Array, density: Array, above: float) -> float:
@@ -237,7 +240,8 @@ def observe_periodic(record: Record, usable: slice, period: int) -> Observation:
     cutoff = choose_cutoff(np.tile(x, 2), step, where=record.file)
     count = int(np.floor(cutoff * period * step)) + 1
     keep = np.fft.rfft(x - mean)
-    keep[count:] = 0.0
+    # Whole periods need no guard: what moves at the band's edge is part of the motion too.
+    keep[int(np.ceil(cutoff / _GUARD * period * step)) + 1 :] = 0.0
     smooth_x = np.fft.irfft(keep, n=period)
 
     def differentiate(orders: Array) -> Array:
@@ -260,7 +264,7 @@ def observe_periodic(record: Record, usable: slice, period: int) -> Observation:
     freedom = max(repeats - 1, 1)
     per_line = np.sum(np.abs(spread) ** 2, axis=0) / (2.0 * freedom * repeats)
     power = float(np.mean(force**2))
-    variance = np.maximum(smooth(per_line), _RELATIVE_FLOOR**2 * power)
+    variance = np.maximum(smooth(per_line, freedom), _RELATIVE_FLOOR**2 * power)
     x_rms, v_rms = float(np.std(x)), float(np.std(velocity))
     noise_f = float(np.sqrt(np.sum((each_f - force) ** 2) / (freedom * period)))
     noise_x = float(np.sqrt(np.sum((each_x - x) ** 2) / (freedom * period)))
