@@ -1,0 +1,176 @@
+"""Records that are no sine test: band, windows and lines against exact relations."""
+
+import numpy as np
+import pytest
+
+from discover.motion_fit.band import _pieces, choose_cutoff, observe_band, observe_periodic
+from discover.records import Record
+from models.checks import InputError
+
+STEP = 1.0 / 500.0
+
+
+def multisine(time, *, low=0.5, high=12.0, count=60, seed=0):
+    """Return a displacement with a flat band of random phases, its velocity and acceleration."""
+    rng = np.random.default_rng(seed)
+    omega = 2.0 * np.pi * rng.uniform(low, high, count)
+    phase = rng.uniform(0.0, 2.0 * np.pi, count)
+    size = 0.01 / np.sqrt(count)
+    wave = np.exp(1j * (np.outer(time, omega) + phase))
+    return tuple(np.imag(wave @ (size * (1j * omega) ** q)) for q in (0, 1, 2))
+
+
+def in_band(window, column, share=0.6):
+    """Return lines of the lower part of the band."""
+    return window.project(column)[..., : int(share * window.omega.size)]
+
+
+@pytest.mark.parametrize("high", [5.0, 12.0, 40.0])
+def test_the_cutoff_lies_just_inside_the_excited_band(high):
+    rng = np.random.default_rng(1)
+    time = STEP * np.arange(20_000)
+    x, _, _ = multisine(time, high=high, count=400)
+    found = choose_cutoff(x + 1e-6 * rng.standard_normal(x.size), STEP)
+    assert 0.8 * high < found <= high
+
+
+def test_noise_alone_has_no_band():
+    with pytest.raises(InputError, match="noise at all frequencies"):
+        choose_cutoff(np.random.default_rng(0).standard_normal(4000), STEP, where="a.csv")
+
+
+@pytest.mark.parametrize("size", [1000, 4001, 25_000])
+@pytest.mark.parametrize("cutoff", [0.004, 0.02, 0.1])
+def test_squared_tapers_add_up_to_one(size, cutoff):
+    total = np.zeros(size)
+    pieces = _pieces(size, cutoff)
+    for start, taper in pieces:
+        total[start : start + taper.size] += taper**2
+    fade = int(np.ceil(1.0 / cutoff))
+    first, last = pieces[0][0], pieces[-1][0] + pieces[-1][1].size
+    np.testing.assert_allclose(total[first + fade : last - fade], 1.0, atol=1e-12)
+    assert np.all(total <= 1.0 + 1e-12)
+    assert not total[:first].any()
+    assert not total[last:].any()
+
+
+def observed(force_of, *, noise=1e-8, size=15_000, seed=0, force_noise=0.0):
+    rng = np.random.default_rng(seed + 100)
+    time = STEP * np.arange(size)
+    x, v, a = multisine(time, seed=seed, count=200)
+    force = force_of(x, v, a) + force_noise * rng.standard_normal(size)
+    record = Record("r.csv", time, force, x + noise * rng.standard_normal(size))
+    return observe_band(record, slice(None), "trajectory"), (x, v, a)
+
+
+def test_a_static_nonlinear_relation_holds_line_by_line():
+    """Force and column pass one linear map: what is equal in time is equal in lines."""
+    seen, (x, _, _) = observed(lambda x, v, a: 3e8 * x**3)
+    for window in seen.windows:
+        own = window.project(3e8 * x**3)
+        np.testing.assert_allclose(window.force, own, atol=1e-9 * np.abs(own).max())
+        fitted = window.project(3e8 * seen.motion.displacement**3)
+        assert np.linalg.norm(fitted - own) < 1e-3 * np.linalg.norm(own)
+
+
+def test_derivatives_stand_for_those_of_the_motion():
+    seen, (_, v, a) = observed(lambda x, v, a: a)
+    middle = slice(1000, -1000)
+    for found, exact in ((seen.motion.velocity, v), (seen.motion.acceleration, a)):
+        error = np.std(found[middle] - exact[middle]) / np.std(exact)
+        assert error < 0.03
+    for window in seen.windows[1:-1]:
+        line, own = in_band(window, seen.motion.acceleration), in_band(window, a)
+        assert np.linalg.norm(line - own) < 1e-3 * np.linalg.norm(own)
+
+
+def test_a_mixed_law_is_recovered_from_lines():
+    seen, _ = observed(lambda x, v, a: 80.0 * a + 400.0 * v + 900.0 * v * np.abs(v))
+    motion = seen.motion
+    columns = np.stack(
+        [motion.acceleration, motion.velocity, motion.velocity * np.abs(motion.velocity)]
+    )
+    left, right = [], []
+    for window in seen.windows:
+        lines = in_band(window, columns)
+        force = window.force[: lines.shape[1]]
+        left.append(np.concatenate((lines.real, lines.imag), axis=1).T)
+        right.append(np.concatenate((force.real, force.imag)))
+    found = np.linalg.lstsq(np.concatenate(left), np.concatenate(right), rcond=None)[0]
+    np.testing.assert_allclose(found, [80.0, 400.0, 900.0], rtol=5e-3)
+
+
+def test_squared_lines_add_up_to_the_tapered_mean_square():
+    seen, _ = observed(lambda x, v, a: 5e4 * x)
+    force = seen.record.force
+    total = sum(w.share * np.sum(np.abs(w.force) ** 2) for w in seen.windows)
+    assert sum(w.share for w in seen.windows) == pytest.approx(1.0)
+    assert total == pytest.approx(np.mean(force**2), rel=0.03)
+
+
+def test_variance_of_lines_is_that_of_the_force_s_noise():
+    scale = []
+    for seed in range(5):
+        noisy, _ = observed(lambda x, v, a: 5e4 * x, force_noise=20.0, seed=seed)
+        clean, _ = observed(lambda x, v, a: 5e4 * x, seed=seed)
+        for one, other in zip(noisy.windows, clean.windows, strict=True):
+            found = 0.5 * np.mean(np.abs(one.force - other.force)[1:] ** 2)
+            scale.append(np.mean(one.variance[1:]) / found)
+        assert noisy.force_noise == pytest.approx(20.0, rel=0.1)
+    assert np.mean(scale) == pytest.approx(1.0, abs=0.1)
+
+
+def test_measured_velocity_is_used_in_place_of_the_derivative():
+    time = STEP * np.arange(8000)
+    x, v, a = multisine(time, count=200)
+    noise = 1e-8 * np.random.default_rng(0).standard_normal(x.size)
+    record = Record("r.csv", time, a, x + noise, velocity=1.5 * v)
+    seen = observe_band(record, slice(None), "trajectory")
+    middle = slice(1000, -1000)
+    np.testing.assert_allclose(
+        seen.motion.velocity[middle], 1.5 * v[middle], atol=0.01 * np.abs(v).max()
+    )
+
+
+def periodic(periods=8, period=2000, noise=0.0, seed=0):
+    rng = np.random.default_rng(seed)
+    orders = np.arange(2, 60)
+    omega = 2.0 * np.pi * orders / (period * STEP)
+    time = STEP * np.arange(periods * period)
+    phase = rng.uniform(0.0, 2.0 * np.pi, orders.size)
+    wave = np.exp(1j * (np.outer(time, omega) + phase))
+    x, v = (np.imag(wave @ (1e-3 * (1j * omega) ** q)) for q in (0, 1))
+    half = np.imag(wave @ (1e-3 * (1j * omega) ** 1.5))
+    force = 50.0 * half + 2e7 * x**3 + noise * rng.standard_normal(time.size)
+    record = Record("p.csv", time, force, x + 1e-9 * rng.standard_normal(time.size))
+    return observe_periodic(record, slice(None), period), (x[:period], v[:period], half[:period])
+
+
+def test_periods_are_averaged_and_derivatives_are_exact():
+    seen, (x, v, half) = periodic()
+    assert seen.motion.periodic
+    np.testing.assert_allclose(seen.motion.velocity, v, atol=1e-6 * np.abs(v).max())
+    (window,) = seen.windows
+    columns = np.stack([seen.motion.fractional(1.5), seen.motion.displacement**3])
+    lines = window.project(columns)
+    stacked = np.concatenate((lines.real, lines.imag), axis=1).T
+    target = np.concatenate((window.force.real, window.force.imag))
+    found = np.linalg.lstsq(stacked, target, rcond=None)[0]
+    np.testing.assert_allclose(found, [50.0, 2e7], rtol=1e-4)
+    np.testing.assert_allclose(window.project(half), lines[0], atol=1e-5 * np.abs(lines[0]).max())
+
+
+def test_what_does_not_repeat_is_the_noise():
+    ratios = []
+    clean = periodic()[0].windows[0]
+    for seed in range(6):
+        seen, _ = periodic(noise=3.0, seed=seed)
+        reference = periodic(seed=seed)[0].windows[0]
+        (window,) = seen.windows
+        assert seen.force_noise == pytest.approx(3.0, rel=0.05)
+        found = 0.5 * np.mean(np.abs(window.force - reference.force)[1:] ** 2)
+        ratios.append(window.variance[1:].mean() / found)
+        # the mean of eight periods: rms^2 / 8, spread over the lines of half the rate
+        assert window.variance[1:].mean() == pytest.approx(9.0 / 8.0 / 2000.0, rel=0.35)
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.2)
+    assert clean.variance.max() < 1e-6 * clean.power
