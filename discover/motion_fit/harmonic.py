@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import nnls
 
-from discover.motion_fit.noise import density_between_lines
+from discover.motion_fit.noise import density_between_lines, line_power
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
 from discover.records import Record
 from discover.sine_fit import harmonic_design, harmonic_series
@@ -136,7 +136,9 @@ def observe_sine(
         every: Array = frequency * np.arange(1.0, last + 1.0)
         spread = every[:: max(every.size // 64, 1)]
         level = density_between_lines(residual, record.step, frequency, spread)
-        noise = float(np.sqrt(np.mean(level) * 0.5 / record.step))
+        noise_power = float(np.mean(level)) * 0.5 / record.step
+        noise_power += line_power(residual, record.step, frequency, float(np.mean(level)))
+        noise = float(np.sqrt(noise_power))
     else:
         freedom = max(time.size - design.shape[1], 1)
         density = np.full(count + 1, 2.0 * duration / time.size * (residual @ residual) / freedom)

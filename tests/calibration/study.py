@@ -52,6 +52,14 @@ def _sides(case: Case) -> int:
     return min(above, len(case.tests) - above)
 
 
+def _divides(case: Case, lower: tuple[str, ...]) -> bool:
+    """Return whether the lower band holds just the tests below the true boundary."""
+    below = {
+        r.file for r, t in zip(case.campaign.records, case.tests, strict=True) if not t.upper
+    }
+    return set(lower) == below
+
+
 def judge_case(case: Case) -> Outcome | None:
     """Return a case's outcome; None for a boundary that its tests hardly reach."""
     segmented = case.boundary != "none"
@@ -82,13 +90,12 @@ def judge_case(case: Case) -> Outcome | None:
         wanted = "undetermined" if one else {
             "dean": "consistent", "frequency": "contradicted"
         }[case.boundary]
-        comparable = {"dean": "dean", "frequency": "frequency"}[case.boundary]
-        found = [b for b in study.boundaries if study.coordinate == comparable]
-        if one and study.boundaries and case.boundary == "frequency":
-            found = []  # one amplitude: the Dean number orders the tests as frequency does
-        elif not one or case.boundary == "dean":
+        found = [b for b in study.boundaries if study.coordinate == case.boundary]
+        if found:
             bracket = any(b.bracket[0] <= case.place <= b.bracket[1] for b in found)
             interval = any(b.interval[0] <= case.place <= b.interval[1] for b in found)
+        else:  # given along the other coordinate: right where it divides the tests rightly
+            bracket = interval = len(names) == 2 and _divides(case, study.bands[0].records)
         if found:
             b = found[0]
             spans = [np.log(high / low) for low, high in (b.interval, b.bracket)]

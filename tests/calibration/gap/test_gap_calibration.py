@@ -18,8 +18,6 @@ def test_distinct_effects_are_named_first():
     right = sum(o.right for o in found)
     bar, count = 0.9, len(found)
     assert right / count >= bar - 2.0 * np.sqrt(bar * (1.0 - bar) / count)
-    closed = [o.ratio <= 1.3 for o in found if o.right]
-    assert np.mean(closed) >= 0.6
 
 
 def test_nothing_hidden_agrees():
