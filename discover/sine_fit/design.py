@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,16 +41,11 @@ def harmonic_design(
     """
     t = finite_array("time", time, ndim=1)
     orders = range(1, harmonics + 1) if isinstance(harmonics, int) else harmonics
-    if t.size > 1 and len(orders) > 2:
-        base = np.exp(2j * np.pi * frequency * t)
-        waves = _powers(base, orders)
-    else:
-        waves = [np.exp(2j * np.pi * k * frequency * t) for k in orders]
-    design = np.empty((t.size, 1 + 2 * len(waves) + int(trend)), order="F")
+    design = np.empty((t.size, 1 + 2 * len(orders) + int(trend)), order="F")
     design[:, 0] = 1.0
-    for column, wave in enumerate(waves):
-        design[:, 1 + 2 * column] = wave.real
-        design[:, 2 + 2 * column] = -wave.imag
+    for position, wave in enumerate(_powers(np.exp(2j * np.pi * frequency * t), orders)):
+        design[:, 1 + 2 * position] = wave.real
+        np.negative(wave.imag, out=design[:, 2 + 2 * position])
     if trend:
         design[:, -1] = t - t.mean()
     return design
@@ -86,15 +81,16 @@ def harmonic_series(time: ArrayLike, frequency: float, coefficients: ArrayLike) 
     return np.ascontiguousarray(total.real)
 
 
-def _powers(base: ComplexArray, orders: Sequence[int]) -> list[ComplexArray]:
-    """Return the powers of unit phasors by repeated products (exact to a few ulp per step)."""
-    result = []
+def _powers(base: ComplexArray, orders: Sequence[int]) -> Iterator[ComplexArray]:
+    """Yield powers of unit phasors by repeated products (exact to a few ulp per step).
+
+    They share one array: each is there until the next is asked for.
+    """
     wave, reached = np.ones_like(base), 0
     for k in orders:
-        if k <= reached:
-            wave, reached = np.ones_like(base), 0
+        if k < reached:
+            wave[:], reached = 1.0, 0
         while reached < k:
-            wave = wave * base
+            np.multiply(wave, base, out=wave)
             reached += 1
-        result.append(wave)
-    return result
+        yield wave
