@@ -1,0 +1,82 @@
+"""A whole study of 40 sine tests: compression of the samples, and all that comes after it.
+
+``python -m tests.benchmarks study`` prints the rows and keeps them; `rows` returns them.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import numpy as np
+
+from discover.records import Campaign, Record
+from discover.study import StudyOptions, run_study
+from discover.study.bands import find_bands
+from discover.study.preparation import prepare
+from models.device import Device
+
+Row = tuple[str, float, str, str]
+"""What was measured, value, unit, beside what."""
+
+_AMPLITUDES = (0.005, 0.010, 0.020, 0.030)
+_FREQUENCIES = np.geomspace(0.1, 6.0, 10)
+_CYCLES = 10.3
+_SIZES = (5_000, 20_000)
+_REPEATS = 3
+
+
+def campaign(samples: int) -> Campaign:
+    """Return 40 tests of a laminar device, each of so many samples, 2 % noise."""
+    rng = np.random.default_rng(0)
+    records = []
+    for amplitude in _AMPLITUDES:
+        for frequency in _FREQUENCIES:
+            omega = 2.0 * np.pi * frequency
+            seconds = np.arange(samples) * (_CYCLES / frequency / samples)
+            angle = omega * seconds + rng.uniform(0.0, 2.0 * np.pi)
+            v = amplitude * omega * np.cos(angle)
+            force = -370.38 * amplitude * omega**2 * np.sin(angle) + 3e3 * v
+            force += 3e4 * v * np.abs(v) + 400.0 * np.sign(v)
+            force += 0.02 * np.sqrt(np.mean(force**2)) * rng.standard_normal(samples)
+            x = amplitude * np.sin(angle) + 1e-6 * rng.standard_normal(samples)
+            records.append(Record(f"{frequency:.3g}hz-{1e3 * amplitude:g}mm", seconds, force, x))
+    return Campaign("40 tests", tuple(records), Device.preset("device-12"), content_hash="0")
+
+
+def measured(samples: int) -> tuple[float, float, float]:
+    """Return the least times of compression, of the search on triangles and of the whole, s."""
+    tests, options = campaign(samples), StudyOptions()
+    times = np.empty((_REPEATS, 3))
+    for row in times:
+        begin = time.perf_counter()
+        prepared = prepare(tests, options)
+        compressed = time.perf_counter()
+        find_bands(prepared, tests.device, options)
+        found = time.perf_counter()
+        run_study(tests, options)
+        row[:] = compressed - begin, found - compressed, time.perf_counter() - found
+    return tuple(times.min(axis=0).tolist())
+
+
+def rows() -> Iterator[Row]:
+    """Yield all rows."""
+    run_study(Campaign("warm", campaign(1_000).records[::4], content_hash="0"))
+    search = {}
+    for samples in _SIZES:
+        compression, search[samples], whole = measured(samples)
+        name = f"40 records of {samples:,} samples"
+        rate = 1e-6 * 40 * samples / compression
+        yield f"{name}: compression to triangles", compression, "s", f"{rate:.2g} million samples/s"
+        yield f"{name}: search for bands and structures, after it", search[samples], "s", ""
+        rest = whole - compression - search[samples]
+        yield f"{name}: prediction, baselines, next test, figures' data", rest, "s", ""
+        yield f"{name}: run_study in all", whole, "s", "one process"
+    few, many = _SIZES
+    ratio = search[many] / search[few]
+    yield f"search at {many:,} over that at {few:,} samples a record", ratio, "times", "1"
+
+
+if __name__ == "__main__":
+    for what, value, unit, beside in rows():
+        print(f"{what}: {value:.3g} {unit}" + (f" ({beside})" if beside else ""))
