@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.calibration.generator import random_case
+from tests.calibration.proposals import standing
 from tests.calibration.study import BARS, outcomes, rates, share, upper_limit
 from tests.calibration.truth import expected_gap
 
@@ -32,3 +33,10 @@ def test_a_tenth_of_the_calibration_study_holds_its_bars():
             doubt = upper_limit(right, asked) - right / asked
             assert share(question, right, asked, found) + doubt >= BARS[question], question
     assert np.mean([o.equivalents for o in found if o.separable]) <= 1.3
+
+
+@pytest.mark.slow
+def test_the_proposed_next_test_tells_more_than_most_others():
+    found = [s for s in (standing(seed) for seed in range(30000, 30024)) if s is not None]
+    assert found
+    assert np.mean([s >= 0.75 for s in found]) >= 0.75
