@@ -12,7 +12,7 @@ from discover.regression.support import Support, SupportFit
 from discover.segmentation import MIN_WINDOWS, Segmentation, segment
 from discover.selection.discrepancy import with_discrepancy
 from discover.selection.judge import Judgement, judge
-from discover.selection.structures import EXTRAS, NUISANCE, named_supports
+from discover.selection.structures import EXTRAS, named_supports
 from discover.study.options import StudyOptions
 from discover.study.preparation import Prepared
 from discover.transition import Transition, find_transition
@@ -151,8 +151,3 @@ def _clear(
     share = transition.share(values[members])
     inside = members[(share < _PURE) if band == 0 else (share > 1.0 - _PURE)]
     return inside if inside.size >= MIN_WINDOWS else members
-
-
-def nuisance_terms(judgement: Judgement) -> tuple[str, ...]:
-    """Return the ids of nuisance terms in a band's verdict."""
-    return tuple(i for i in judgement.support.ids if i in NUISANCE)
