@@ -17,7 +17,7 @@ from scipy.special import logsumexp
 
 from discover.naming.candidates import Part, Variant, scales_of, variants
 from discover.naming.fit import ModelFit, whole_model
-from discover.naming.forces import added_force
+from discover.naming.forces import Trial
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import ForceModel
@@ -89,19 +89,24 @@ def candidate_columns(
 ) -> Array:
     """Return the whitened rows of every part of every variant, (C, R)."""
     parts = [p for v in chosen for p in v.parts]
+    terms = [TERMS[p.id] for p in parts]
+    shapes = [t.shape(p.shape) for t, p in zip(terms, parts, strict=True)]
     blocks = []
     for r in rows:
-        forces = np.stack(
-            [_unit_force(r, model, p) for p in parts]
-        )
-        blocks.append(r.project(forces))
+        trial = Trial(r.observation, whole_model(r, model))
+        forces = [
+            trial.added(t, s, p.probe) for t, s, p in zip(terms, shapes, parts, strict=True)
+        ]
+        block = np.empty((len(parts), r.target.size))
+        over = np.array([trial.on_cycle(t, s) for t, s in zip(terms, shapes, strict=True)])
+        if r.cycle_rows is not None and over.any():
+            block[over] = np.stack([f for f, c in zip(forces, over, strict=True) if c]) @ (
+                r.cycle_rows
+            )
+        if not over.all():
+            block[~over] = r.project(np.stack([f for f, c in zip(forces, over, strict=True) if not c]))
+        blocks.append(block)
     return np.concatenate(blocks, axis=1)
-
-
-def _unit_force(rows: RecordRows, model: ForceModel, part: Part) -> Array:
-    term = TERMS[part.id]
-    whole = whole_model(rows, model)
-    return added_force(rows.observation, whole, term, term.shape(part.shape), part.probe)
 
 
 def _reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from discover.motion_fit import Observation
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
-from models.motion import Motion
 from models.terms import Shape, Term
 
 DELAY = "time-delay"
 _PATH = ("hysteresis",)
+_SLOW = ("thermal-drift", "sensor-drift")
 
 
 def needs_cycle(term: Term, shape: Shape) -> bool:
@@ -52,49 +53,61 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
 
 
 def _changes(fitted: FittedTerm) -> bool:
-    return fitted.id in ("thermal-drift", "sensor-drift")
+    return fitted.id in _SLOW
 
 
-def added_force(
-    observation: Observation, model: ForceModel, term: Term, shape: Shape, probe: float
-) -> Array:
-    """Return the force that a unit of a term adds to `model`, (N,).
+@dataclass(frozen=True)
+class Trial:
+    """What terms are tried beside on one record: its motion and the model's force on it."""
 
-    Parameters
-    ----------
-    observation : Observation
-        The record.
-    model : ForceModel
-        What the term is added to: changes of input and output act on its force.
-    term : Term
-        The term.
-    shape : mapping
-        Its shape.
-    probe : float
-        Coefficient at which a change of input or output is tried.
-    """
-    if term.id == DELAY and observation.late is not None:
-        late = ForceModel((*model.terms, FittedTerm(DELAY, probe)))
-        return (model_force(observation, late) - model_force(observation, model)) / probe
-    memory = needs_cycle(term, shape) and observation.cycle is not None
-    motion = observation.cycle if memory else observation.motion
-    if motion is None:
-        raise ValueError("a record with memory has a cycle")
-    if term.column is not None:
-        force = term.column(motion, shape)
-    elif term.transform is not None:
-        force = _changed(model, term, shape, probe, motion)
-    else:
-        raise ValueError(f"{term.id} neither adds nor changes a force")
-    return _from_cycle(observation, force) if memory else force
+    observation: Observation
+    """The record."""
+    model: ForceModel
+    """What a term is added to: changes of input and output act on its force."""
 
+    @cached_property
+    def _late_from(self) -> Array:
+        return model_force(self.observation, self.model)
 
-def _changed(
-    model: ForceModel, term: Term, shape: Shape, probe: float, motion: Motion
-) -> Array:
-    steady = ForceModel(tuple(t for t in model.terms if not _changes(t)))
-    before = steady.force(motion)
-    if term.transform is None:
-        return before
-    after = term.transform(lambda _: before, motion, probe, shape)
-    return (after - before) / probe
+    @cached_property
+    def _on_cycle(self) -> Array | None:
+        cycle = self.observation.cycle
+        return None if cycle is None else self._steady.force(cycle)
+
+    @cached_property
+    def _at_samples(self) -> Array:
+        return self._steady.force(self.observation.motion)
+
+    @property
+    def _steady(self) -> ForceModel:
+        return ForceModel(tuple(t for t in self.model.terms if not _changes(t)))
+
+    def on_cycle(self, term: Term, shape: Shape) -> bool:
+        """Tell whether a term is evaluated over one steady cycle: all but jumps and slow change."""
+        if self.observation.cycle is None or term.id in (DELAY, *_SLOW):
+            return False
+        return needs_cycle(term, shape) or "transition_speed" not in shape
+
+    def added(self, term: Term, shape: Shape, probe: float) -> Array:
+        """Return the force that a unit of a term adds, on the cycle or at the motion's samples.
+
+        Parameters
+        ----------
+        term : Term
+            The term.
+        shape : mapping
+            Its shape.
+        probe : float
+            Coefficient at which a change of input or output is tried.
+        """
+        if term.id == DELAY and self.observation.late is not None:
+            late = ForceModel((*self.model.terms, FittedTerm(DELAY, probe)))
+            return (model_force(self.observation, late) - self._late_from) / probe
+        cycle = self.observation.cycle if self.on_cycle(term, shape) else None
+        motion = self.observation.motion if cycle is None else cycle
+        if term.column is not None:
+            return term.column(motion, shape)
+        if term.transform is None:
+            raise ValueError(f"{term.id} neither adds nor changes a force")
+        before = self._at_samples if cycle is None or self._on_cycle is None else self._on_cycle
+        return (term.transform(lambda _: before, motion, probe, shape) - before) / probe

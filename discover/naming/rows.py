@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from discover.motion_fit import Observation, real_rows
 from discover.naming.noise import noise_density
@@ -39,6 +40,9 @@ class RecordRows:
     """Number of rows in which a model's error would show: few lines carry it."""
     held: tuple[FittedTerm, ...] = ()
     """Terms of the model in this record that are not fitted."""
+    cycle_rows: Array | None = None
+    """(G, R) maps a force on the cycle's grid to rows, as `project` does with the same force at
+    the samples; None where there is no cycle."""
 
 
 def record_rows(
@@ -98,7 +102,30 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
     def project(columns: Array) -> Array:
         return np.asarray(columns @ whitened)
 
-    return RecordRows(observation, project(observation.measured), project, 8.0, held)
+    return RecordRows(
+        observation, project(observation.measured), project, 8.0, held,
+        _cycle_rows(observation, whitened),
+    )
+
+
+def _cycle_rows(observation: Observation, whitened: Array) -> Array | None:
+    """Return the rows (G, R) of the cycle's points: samples lie between two of them."""
+    cycle = observation.cycle
+    if cycle is None:
+        return None
+    size = cycle.displacement.size
+    place = np.mod(observation.motion.time * observation.frequency, 1.0) * size
+    before = np.minimum(place.astype(int), size - 1)
+    share = place - before
+    samples = np.arange(place.size)
+    between = csr_array(
+        (
+            np.concatenate([1.0 - share, share]),
+            (np.concatenate([before, (before + 1) % size]), np.tile(samples, 2)),
+        ),
+        shape=(size, place.size),
+    )
+    return np.asarray(between @ whitened)
 
 
 def _hum(frequencies: Array, width: float) -> Array:
