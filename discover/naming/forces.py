@@ -10,16 +10,15 @@ import numpy as np
 from discover.motion_fit import Observation
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
+from models.motion import Motion
 from models.terms import Shape, Term
 
 DELAY = "time-delay"
-_PATH = ("hysteresis",)
-_SLOW = ("thermal-drift", "sensor-drift")
 
 
 def needs_cycle(term: Term, shape: Shape) -> bool:
     """Tell whether a term has memory: it then sees one cycle of the steady state."""
-    remembers = term.id in _PATH or shape.get("presliding", 0.0) > 0.0
+    remembers = term.follows == "path" or shape.get("presliding", 0.0) > 0.0
     return term.acts != "force" or remembers
 
 
@@ -53,7 +52,7 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
 
 
 def _changes(fitted: FittedTerm) -> bool:
-    return fitted.id in _SLOW
+    return fitted.term.follows == "time"
 
 
 @dataclass(frozen=True)
@@ -84,7 +83,7 @@ class Trial:
 
     def on_cycle(self, term: Term, shape: Shape) -> bool:
         """Tell whether a term is evaluated over one steady cycle: all but jumps and slow change."""
-        if self.observation.cycle is None or term.id in (DELAY, *_SLOW):
+        if self.observation.cycle is None or term.id == DELAY or term.follows == "time":
             return False
         return needs_cycle(term, shape) or "transition_speed" not in shape
 
@@ -110,4 +109,8 @@ class Trial:
         if term.transform is None:
             raise ValueError(f"{term.id} neither adds nor changes a force")
         before = self._at_samples if cycle is None or self._on_cycle is None else self._on_cycle
-        return (term.transform(lambda _: before, motion, probe, shape) - before) / probe
+
+        def force_of(moved: Motion) -> Array:
+            return before if moved is motion else self._steady.force(moved)
+
+        return (term.transform(force_of, motion, probe, shape) - before) / probe

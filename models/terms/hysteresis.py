@@ -76,4 +76,5 @@ TERM = Term(
     ),
     nonnegative=True,
     mistaken_for=("coulomb-friction", "stiffness", "stribeck-friction"),
+    follows="path",
 )

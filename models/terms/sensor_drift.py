@@ -21,4 +21,5 @@ TERM = Term(
     column,
     parameters=(Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),),
     mistaken_for=("force-offset",),
+    follows="time",
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 from models.checks import Array, InputError, number
@@ -12,6 +13,7 @@ from models.motion import Motion
 Shape = Mapping[str, float]
 ForceOf = Callable[[Motion], Array]
 ScaledBy = Literal["", "displacement", "speed", "force"]
+Follows = Literal["motion", "path", "time"]
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,20 @@ class Parameter:
     """The campaign's amplitude that the bounds are fractions of; "" where they are absolute."""
     spacing: Literal["linear", "log"] = "linear"
     """How trial values are spread."""
+
+
+@dataclass(frozen=True)
+class TermSource:
+    """The file that a user's own term was read from."""
+
+    path: Path
+    """Where it was found."""
+    sha256: str
+    """Of the file's bytes."""
+
+    def to_dict(self) -> dict[str, str]:
+        """Return the file's name and hash, as models store them."""
+        return {"file": self.path.name, "sha256": self.sha256}
 
 
 @dataclass(frozen=True)
@@ -63,6 +79,13 @@ class Term:
     """Ids that data of little variety can't tell it from."""
     harmonic: bool = False
     """True where the column is linear in the displacement."""
+    follows: Follows = "motion"
+    """What a column is a function of: the motion at the moment; its path, so that a sine test
+    shows the cycle that it settles into; or besides the time since the record began."""
+    trials: tuple[Shape, ...] = ()
+    """Shapes that are tried first, in units of `scaled_by`; empty to spread the parameters."""
+    source: TermSource | None = None
+    """File of a user's own term; None for those of the catalogue."""
 
     def shape(self, given: Shape) -> dict[str, float]:
         """Return the parameters' values: those given, else the defaults that are absolute.

@@ -30,4 +30,5 @@ TERM = Term(
         Parameter("heating", 0.0, 1.0, 0.0, ""),
     ),
     mistaken_for=("sensor-gain", "viscous-damping"),
+    follows="time",
 )
