@@ -92,6 +92,38 @@ class StudyFigureData:
 
 
 @dataclass(frozen=True)
+class PlannedTest:
+    """One sine test of a plan, or one window of a record that is none."""
+
+    file: str
+    """Name of the record as in the campaign."""
+    kind: str
+    """Kind of record: "sine", "periodic", "transient" or "trajectory"."""
+    held_out: bool
+    """Never fitted, only predicted."""
+    frequency: float
+    """Hz; of a window its mean frequency."""
+    amplitude: float
+    """m, displacement amplitude; of a window root two times its standard deviation."""
+    noise_percent: float | None
+    """The force's noise over the force, percent; None where it can't be told."""
+    level: str
+    """Gravest finding on the record: "error", "warning", or "" where there is neither."""
+
+
+@dataclass(frozen=True)
+class PlanFigureData:
+    """Everything that the pictures of a plan need and ``check.json`` does not carry."""
+
+    tests: tuple[PlannedTest, ...]
+    """In the campaign's order."""
+    dean_per_speed_paper: float | None = None
+    """Dean number per m/s of piston speed, the paper's convention; None without a device."""
+    dean_per_speed_standard: float | None = None
+    """The same by the standard convention."""
+
+
+@dataclass(frozen=True)
 class GapCurves:
     """One record of a gap search: measured, and the model before and after it was mended."""
 

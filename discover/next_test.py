@@ -123,7 +123,7 @@ def propose(
     fits = [judgement.engine.fit(s.fit.support) for _, s, _ in pair if s is not None]
     spreads = [_spread(judgement.engine, fit, dictionary) for fit in fits]
     weight = pair[0][2] / max(pair[0][2] + pair[1][2], 1e-300)
-    noise = _relative_noise(judgement.windows)
+    noise = relative_noise(judgement.windows)
     gains = np.array(
         [
             expected_gain(f, a, fits, spreads, dictionary, weight=weight, noise=noise)
@@ -172,7 +172,7 @@ def expected_gain(
     noise : float
         Standard deviation of a line over the force's root mean square.
     """
-    rows = _rows(frequency, amplitude, dictionary)
+    rows = sine_rows(frequency, amplitude, dictionary)
     means = [rows @ fit.combined for fit in fits]
     roots = [rows @ spread for spread in spreads]
     level = max(noise, _LEAST_NOISE) * max(float(np.linalg.norm(m)) for m in means)
@@ -192,7 +192,7 @@ def _divergence(means: Sequence[Array], covariances: Sequence[Array]) -> float:
     return 0.5 * float(trace - shift.size + shift @ inverse @ shift + logs[1] - logs[0])
 
 
-def _rows(frequency: float, amplitude: float, dictionary: Dictionary) -> Array:
+def sine_rows(frequency: float, amplitude: float, dictionary: Dictionary) -> Array:
     """Return (R, K) rows of the columns' lowest lines in a sine test; the delay's are zero."""
     motion = sine_motion(amplitude, frequency, samples=_SAMPLES)
     columns = dictionary.evaluate(motion)
@@ -214,7 +214,8 @@ def _spread(engine: ProfiledFit, fit: SupportFit, dictionary: Dictionary) -> Arr
     return np.asarray(jacobian @ ((right.T * inverse) / norms[:, None]) * scale)
 
 
-def _relative_noise(windows: Sequence[WindowRows]) -> float:
+def relative_noise(windows: Sequence[WindowRows]) -> float:
+    """Return a line's standard deviation over its record's rms force, the median of `windows`."""
     levels = [np.sqrt(np.median(w.total_variance) / max(w.power, 1e-300)) for w in windows]
     return float(np.median(levels))
 

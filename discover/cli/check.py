@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from discover.cli import options
+from discover.cli.invocation import Invocation
 from discover.cli.results import deliver, result_folder, working
 
 FAILED = 1
 
 
 def check(
+    context: typer.Context,
     campaign: Annotated[
         Path, typer.Argument(metavar="CAMPAIGN", help="Folder with campaign.toml and its records.")
     ],
@@ -30,18 +33,29 @@ def check(
 
     from discover.data_check import check_campaign
     from discover.readers import read_campaign
-    from discover.report.check import check_lines
+    from discover.report.check import check_figures, check_lines, check_report
     from discover.study import StudyOptions
 
     with working(f"Checking {campaign}"):
         answer = check_campaign(read_campaign(campaign), StudyOptions(seed=seed, jobs=jobs))
+    with working("Drawing"):
         document = answer.to_dict()
+        figures = check_figures(document, answer.figure_data)
+        typed = shlex.quote(str(campaign))
+        invocation: Invocation = context.obj
+        page = check_report(
+            document,
+            answer.figure_data,
+            figures,
+            campaign=typed,
+            command=invocation.repeat(seed=seed),
+        )
     deliver(
         document,
         name="check.json",
         folder=folder,
-        files={},
-        summary=check_lines(document),
+        files={"report.html": page, **{f"figures/{n}.svg": svg for n, svg in figures.items()}},
+        summary=check_lines(document, campaign=typed),
         as_json=as_json,
     )
     return 0 if answer.passed else FAILED

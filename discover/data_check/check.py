@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from discover.data_check.result import DataCheck, Inseparable
-from discover.data_check.separation import inseparable_pairs
+from discover.data_check.added_test import added_test
+from discover.data_check.conditioning import conditioning
+from discover.data_check.figures import plan_figure_data
+from discover.data_check.result import AddedTest, Conditioning, DataCheck, Inseparable, Pair
+from discover.data_check.separation import expected_pairs, inseparable_pairs
 from discover.record_checks import RecordCheck, check_records
 from discover.records import Campaign, Finding
 from discover.study.options import StudyOptions
-from discover.study.preparation import prepare
+from discover.study.preparation import Prepared, prepare
 
 _SAME = 0.05  # relative difference below which two amplitudes are one
 
@@ -35,17 +38,30 @@ def check_campaign(campaign: Campaign, options: StudyOptions | None = None) -> D
     """
     chosen = options or StudyOptions()
     judged = check_records(campaign)
+    findings = (*judged.findings, *_plan_findings(judged.records))
+    prepared: Prepared | None = None
+    structures: tuple[Conditioning, ...] = ()
+    pairs: tuple[Pair, ...] = ()
     inseparable: tuple[Inseparable, ...] = ()
+    more: AddedTest | None = None
     if campaign.fitted:
         prepared = prepare(campaign, chosen)
-        inseparable = inseparable_pairs(prepared.fitted, prepared.dictionary)
+        windows, dictionary = prepared.fitted, prepared.dictionary
+        structures = conditioning(windows, dictionary)
+        pairs = expected_pairs(windows, dictionary)
+        inseparable = inseparable_pairs(pairs, windows)
+        more = added_test(pairs, windows, dictionary, campaign.rig)
     return DataCheck(
         title=campaign.title,
         content_hash=campaign.content_hash,
         seed=chosen.seed,
         records=judged.records,
-        findings=(*judged.findings, *_plan_findings(judged.records)),
+        findings=findings,
+        structures=structures,
+        pairs=pairs,
         inseparable=inseparable,
+        added_test=more,
+        figure_data=plan_figure_data(campaign, judged.records, findings, prepared),
     )
 
 

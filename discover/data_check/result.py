@@ -5,9 +5,98 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from discover.figure_data import PlanFigureData
 from discover.header import document_header
 from discover.record_checks import RecordCheck
 from discover.records import Finding
+
+
+@dataclass(frozen=True)
+class Conditioning:
+    """How well a plan of tests determines the parameters of one structure."""
+
+    name: str
+    """"FOIM", "IOIM-linear", "IOIM-laminar" or "IOIM-turbulent"."""
+    terms: tuple[str, ...]
+    """Ids of its terms."""
+    columns: int
+    """Number of its parameters: a coefficient a term, and the order where one is fitted."""
+    rank: int
+    """Number of combinations of them that the tests can see at their noise."""
+    condition: float | None
+    """Greatest over least singular value of the whitened columns of unit length; None where a
+    column is a mixture of the others."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "name": self.name,
+            "terms": list(self.terms),
+            "rank": self.rank,
+            "columns": self.columns,
+            "condition": self.condition,
+        }
+
+
+@dataclass(frozen=True)
+class ExpectedGap:
+    """By how much the tests would reject one structure if another one were true."""
+
+    truth: str
+    """What makes the force."""
+    model: str
+    """What is fitted to it."""
+    nats: float
+    """Expected log-likelihood gap."""
+    word: str
+    """"separable", "inseparable", or "nested" where the model holds the truth as a case."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "truth": self.truth,
+            "model": self.model,
+            "gap_nats": self.nats,
+            "word": self.word,
+        }
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two structures, and whether a plan of tests can tell them apart."""
+
+    structures: tuple[str, str]
+    """Their names."""
+    gaps: tuple[ExpectedGap, ExpectedGap]
+    """With the first true, with the second true."""
+    rank: int
+    """Number of combinations of both structures' parameters that the tests can see."""
+    columns: int
+    """Number of their distinct parameters."""
+    separable: bool
+    """Whether the gap suffices to rule one of them out at 5 %."""
+
+    @property
+    def nats(self) -> float:
+        """The lesser gap; of nested structures the one with the larger structure true."""
+        return min(g.nats for g in self.gaps if g.word != "nested")
+
+    @property
+    def nested(self) -> bool:
+        """Whether one structure is a case of the other."""
+        return any(g.word == "nested" for g in self.gaps)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "structures": list(self.structures),
+            "gap_nats": self.nats,
+            "separable": self.separable,
+            "nested": self.nested,
+            "rank": self.rank,
+            "columns": self.columns,
+            "expected": [g.to_dict() for g in self.gaps],
+        }
 
 
 @dataclass(frozen=True)
@@ -27,6 +116,29 @@ class Inseparable:
 
 
 @dataclass(frozen=True)
+class AddedTest:
+    """The sine test that would do most for the pair that is hardest to tell apart."""
+
+    frequency_hz: float
+    """Hz."""
+    amplitude_m: float
+    """m."""
+    structures: tuple[str, str]
+    """The pair that is hardest to tell with this test added."""
+    nats: float
+    """Its expected gap then."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "frequency_hz": self.frequency_hz,
+            "amplitude_m": self.amplitude_m,
+            "structures": list(self.structures),
+            "gap_nats": self.nats,
+        }
+
+
+@dataclass(frozen=True)
 class DataCheck:
     """The answer of a check."""
 
@@ -40,8 +152,16 @@ class DataCheck:
     """In the campaign's order."""
     findings: tuple[Finding, ...]
     """On the records and on the plan, in words."""
+    structures: tuple[Conditioning, ...]
+    """What the tests determine of each; none where no record may be fitted."""
+    pairs: tuple[Pair, ...]
+    """Every two of them."""
     inseparable: tuple[Inseparable, ...]
-    """Pairs of structures."""
+    """Those of the pairs that can't be told apart."""
+    added_test: AddedTest | None
+    """What would help; None where every pair is separable or no other test is within limits."""
+    figure_data: PlanFigureData
+    """What the pictures need besides."""
 
     @property
     def passed(self) -> bool:
@@ -57,5 +177,8 @@ class DataCheck:
             "passed": self.passed,
             "records": [r.to_dict() for r in self.records],
             "findings": [f.to_dict() for f in self.findings],
+            "structures": [s.to_dict() for s in self.structures],
+            "pairs": [pair.to_dict() for pair in self.pairs],
             "inseparable": [pair.to_dict() for pair in self.inseparable],
+            "added_test": self.added_test.to_dict() if self.added_test else None,
         }

@@ -7,39 +7,22 @@ the noise is the log-likelihood that the records would speak with if the first s
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
-from discover.data_check.result import Inseparable
+from discover.data_check.conditioning import joint_rank
+from discover.data_check.nominal import TELLING, contains, gap_to, nominal_force, supports_of
+from discover.data_check.result import ExpectedGap, Inseparable, Pair
 from discover.library.dictionary import Dictionary
-from discover.regression.support import ProfiledFit, Support
-from discover.selection.structures import FRACTIONAL, POWER, TURBULENT_EXPONENT
-from discover.triangle import Triangle, WindowRows, triangle_of
-from models.checks import Array
+from discover.triangle import WindowRows, triangle_of
 
-TELLING = math.log(20.0)
-"""Nats from which a structure can be ruled out at 5 %."""
-
-_FRICTION = "coulomb-friction"
-_NOMINAL_ORDER = 1.5
 _SAME_FREQUENCY = 0.02
 
-_SUPPORTS = {
-    "FOIM": Support((), free=(FRACTIONAL,)),
-    "IOIM-linear": Support(("inertia", "viscous-damping")),
-    "IOIM-laminar": Support(("inertia", "viscous-damping", "quadratic-damping")),
-    "IOIM-turbulent": Support(("inertia", "viscous-damping"), fixed=((POWER, TURBULENT_EXPONENT),)),
-}
 
-
-def inseparable_pairs(
-    windows: Sequence[WindowRows], dictionary: Dictionary
-) -> tuple[Inseparable, ...]:
-    """Return the pairs of structures that these tests can't tell apart at their noise.
+def expected_pairs(windows: Sequence[WindowRows], dictionary: Dictionary) -> tuple[Pair, ...]:
+    """Return every two structures with the gaps that these tests are expected to open.
 
     Parameters
     ----------
@@ -49,72 +32,47 @@ def inseparable_pairs(
         Of their columns.
     """
     triangle = triangle_of(windows)
-    supports = {name: _with_friction(s, dictionary) for name, s in _SUPPORTS.items()}
-    nominal = {name: _nominal_force(s, triangle, dictionary) for name, s in supports.items()}
+    supports = supports_of(dictionary)
+    forces = {
+        name: triangle.columns @ nominal_force(s, triangle, dictionary)
+        for name, s in supports.items()
+    }
+
+    def gap(truth: str, model: str) -> ExpectedGap:
+        nats = gap_to(forces[truth], supports[model], triangle, dictionary)
+        if contains(supports[model], supports[truth]):
+            return ExpectedGap(truth, model, nats, "nested")
+        return ExpectedGap(truth, model, nats, "separable" if nats >= TELLING else "inseparable")
+
     found = []
     for first, second in combinations(supports, 2):
+        gaps = (gap(first, second), gap(second, first))
+        rank, columns = joint_rank((supports[first], supports[second]), triangle, dictionary)
         # Of two nested structures only the larger one can be told, by what the smaller one lacks.
-        gaps = [
-            _gap(nominal[truth], supports[model], triangle, dictionary)
-            for truth, model in ((first, second), (second, first))
-            if not _contains(supports[model], supports[truth])
-        ]
-        gap = min(gaps)
-        if gap < TELLING:
-            found.append(Inseparable((first, second), gap, _why(first, second, gap, windows)))
+        separable = all(g.word != "inseparable" for g in gaps)
+        found.append(Pair((first, second), gaps, rank, columns, separable))
     return tuple(found)
 
 
-def expected_gap(
-    truth: str, model: str, windows: Sequence[WindowRows], dictionary: Dictionary
-) -> float:
-    """Return the nats by which `model` would be rejected on these tests if `truth` were true.
+def inseparable_pairs(
+    pairs: Sequence[Pair], windows: Sequence[WindowRows]
+) -> tuple[Inseparable, ...]:
+    """Return those of the pairs that the tests can't tell apart at their noise, and why.
 
     Parameters
     ----------
-    truth, model : str
-        Names of structures.
+    pairs : sequence of Pair
+        From `expected_pairs`.
     windows : sequence of WindowRows
-        Of the tests.
-    dictionary : Dictionary
-        Of their columns.
+        Of the same records.
     """
-    triangle = triangle_of(windows)
-    force = _nominal_force(_with_friction(_SUPPORTS[truth], dictionary), triangle, dictionary)
-    return _gap(force, _with_friction(_SUPPORTS[model], dictionary), triangle, dictionary)
+    return tuple(
+        Inseparable(p.structures, p.nats, _why(p, windows)) for p in pairs if not p.separable
+    )
 
 
-def _with_friction(support: Support, dictionary: Dictionary) -> Support:
-    if not dictionary.has(_FRICTION):
-        return support
-    return replace(support, plain=(*support.plain, _FRICTION))
-
-
-def _contains(larger: Support, smaller: Support) -> bool:
-    return set(smaller.ids) <= set(larger.ids)
-
-
-def _nominal_force(support: Support, triangle: Triangle, dictionary: Dictionary) -> Array:
-    """Return the whitened force (m,) in which each term but friction has an equal part."""
-    shapes = tuple(_NOMINAL_ORDER for _ in support.free)
-    weights = ProfiledFit(triangle, dictionary).at(support, shapes).weights
-    columns = triangle.columns @ weights
-    size = np.linalg.norm(columns, axis=0)
-    kept = np.array([i != _FRICTION for i in support.ids]) & (size > 0.0)
-    force = np.sum(columns[:, kept] / size[kept], axis=1)
-    total = float(np.linalg.norm(force))
-    scale = float(np.linalg.norm(triangle.target)) / total if total > 0.0 else 0.0
-    return np.asarray(scale * force)
-
-
-def _gap(force: Array, model: Support, triangle: Triangle, dictionary: Dictionary) -> float:
-    """Return half the squared misfit of `model` to a whitened force, nats."""
-    matrix = np.column_stack([triangle.columns, force])
-    fit = ProfiledFit(replace(triangle, matrix=matrix), dictionary).fit(model)
-    return 0.5 * fit.chi2
-
-
-def _why(first: str, second: str, gap: float, windows: Sequence[WindowRows]) -> str:
+def _why(pair: Pair, windows: Sequence[WindowRows]) -> str:
+    first, second = pair.structures
     count = len({w.record for w in windows})
     records = "the one record that may be fitted" if count == 1 else f"these {count} records"
     frequencies = np.array([w.frequency for w in windows])
@@ -125,6 +83,6 @@ def _why(first: str, second: str, gap: float, windows: Sequence[WindowRows]) -> 
             " several frequencies"
         )
     return (
-        f"at their noise {records} would speak with only {gap:.2g} nats for the right one of"
+        f"at their noise {records} would speak with only {pair.nats:.2g} nats for the right one of"
         f" {first} and {second}, and {TELLING:.1f} are needed to rule one out at 5 %"
     )

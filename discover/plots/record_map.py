@@ -9,15 +9,15 @@ from typing import Any
 from matplotlib.axes import Axes
 
 from discover.figure_data import RecordCurves, StudyFigureData
-from discover.plots.style import (
-    INK,
-    MUTED,
-    house_style,
-    new_figure,
-    plain_log_axis,
-    record_marker,
-    to_svg,
+from discover.plots.plan_axes import (
+    DOTTED,
+    constant_speed,
+    dean_line,
+    plan_labels,
+    plan_limits,
+    speed_range,
 )
+from discover.plots.style import INK, MUTED, house_style, new_figure, record_marker, to_svg
 
 
 def record_map(document: Mapping[str, Any], data: StudyFigureData) -> str | None:
@@ -45,26 +45,18 @@ def record_map(document: Mapping[str, Any], data: StudyFigureData) -> str | None
     with house_style():
         figure = new_figure(660, 490)
         axes = figure.add_subplot()
-        axes.set(xscale="log", yscale="log")
-        _limits(axes, tests)
+        plan_limits(
+            axes,
+            [r.frequency for r in tests if r.frequency],
+            [1e3 * r.amplitude for r in tests if r.amplitude],
+        )
         _dean_lines(axes, document, data)
         for boundary in document.get("boundaries", ()):
             _boundary(axes, boundary, document["coordinate"])
         _points(axes, tests)
-        axes.set_xlabel("Frequency (Hz)")
-        axes.set_ylabel("Displacement amplitude (mm)")
-        plain_log_axis(axes, which="x")
-        plain_log_axis(axes, which="y")
+        plan_labels(axes)
         figure.legend(loc="outside upper left", ncols=3, handletextpad=0.4, columnspacing=1.4)
         return to_svg(figure, name="map", title="Map of the tests, coloured by structure")
-
-
-def _limits(axes: Axes, tests: Sequence[RecordCurves]) -> None:
-    frequencies = [r.frequency for r in tests if r.frequency]
-    amplitudes = [1e3 * r.amplitude for r in tests if r.amplitude]
-    for values, put in ((frequencies, axes.set_xlim), (amplitudes, axes.set_ylim)):
-        room = max(1.25, (max(values) / min(values)) ** 0.12)
-        put(min(values) / room, max(values) * room)
 
 
 def _points(axes: Axes, tests: Sequence[RecordCurves]) -> None:
@@ -78,76 +70,27 @@ def _points(axes: Axes, tests: Sequence[RecordCurves]) -> None:
         )
 
 
-def _constant_speed(axes: Axes, speed: float) -> tuple[list[float], list[float]]:
-    """Return the line of one speed amplitude (m/s) across the axes: Hz, mm."""
-    frequencies = list(axes.get_xlim())
-    return frequencies, [1e3 * speed / (2.0 * math.pi * f) for f in frequencies]
-
-
 def _dean_lines(axes: Axes, document: Mapping[str, Any], data: StudyFigureData) -> None:
     convention = str(document.get("dean_check", {}).get("convention", "paper"))
     scale = {"paper": data.dean_per_speed_paper, "standard": data.dean_per_speed_standard}
     per_speed = scale.get(convention)
     if not per_speed:
         return
-    (f_low, f_high), (a_low, a_high) = axes.get_xlim(), axes.get_ylim()
-    lowest, highest = (
-        2e-3 * math.pi * f * a * per_speed for f, a in ((f_low, a_low), (f_high, a_high))
-    )
+    lowest, highest = (speed * per_speed for speed in speed_range(axes))
     criterion = float(document.get("dean_check", {}).get("criterion") or 100.0)
     decades = range(math.ceil(math.log10(lowest)), math.floor(math.log10(highest)) + 1)
     for dean in sorted({10.0**d for d in decades} | {criterion}):
         if not lowest < dean < highest:
             continue
-        line = _constant_speed(axes, dean / per_speed)
-        axes.plot(
-            *line,
-            color=MUTED,
-            linewidth=0.9,
-            linestyle=(0, (1, 2.5)),
-            zorder=1,
-            scalex=False,
-            scaley=False,
-        )
-        _edge_label(axes, line, f"De {dean:g}")
+        dean_line(axes, dean / per_speed, f"De {dean:g}")
     axes.plot(
         [],
         [],
         color=MUTED,
         linewidth=0.9,
-        linestyle=(0, (1, 2.5)),
+        linestyle=DOTTED,
         label=f"Dean number ({convention} convention)",
     )
-
-
-def _edge_label(axes: Axes, line: tuple[list[float], list[float]], text: str) -> None:
-    """Write `text` where the falling line meets the top edge, or else the left one."""
-    product = line[0][0] * line[1][0]
-    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
-    across = product / top
-    if left <= across <= right:
-        axes.annotate(
-            text,
-            (across, top),
-            xytext=(3, 3),
-            textcoords="offset points",
-            fontsize=8.5,
-            color=MUTED,
-            ha="center",
-            va="bottom",
-            annotation_clip=False,
-        )
-    elif bottom < line[1][0] < top:
-        axes.annotate(
-            text,
-            (left, line[1][0]),
-            xytext=(4, 0),
-            textcoords="offset points",
-            fontsize=8.5,
-            color=MUTED,
-            ha="left",
-            va="bottom",
-        )
 
 
 def _boundary(axes: Axes, boundary: Mapping[str, Any], coordinate: str) -> None:
@@ -166,9 +109,9 @@ def _boundary(axes: Axes, boundary: Mapping[str, Any], coordinate: str) -> None:
         if spread:
             axes.axvspan(value * spread[0], value * spread[1], **fill)
         return
-    axes.plot(*_constant_speed(axes, value), scalex=False, scaley=False, **line)
+    axes.plot(*constant_speed(axes, value), scalex=False, scaley=False, **line)
     if spread:
-        low, high = (_constant_speed(axes, value * k)[1] for k in spread)
+        low, high = (constant_speed(axes, value * k)[1] for k in spread)
         limits = axes.get_ylim()
         axes.fill_between(axes.get_xlim(), low, high, **fill)
         axes.set_ylim(limits)

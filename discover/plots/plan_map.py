@@ -1,0 +1,168 @@
+"""The plan of tests before any fit: where each stands, its noise, and what was found on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+
+from discover.figure_data import PlanFigureData, PlannedTest
+from discover.plots.plan_axes import DOTTED, dean_line, plan_labels, plan_limits, speed_range
+from discover.plots.style import INK, MUTED, house_style, new_figure, to_svg
+
+_CLASSES = (
+    (1.0, "#5ec962", "below 1 %"),
+    (3.0, "#21918c", "1 to 3 %"),
+    (10.0, "#3b528b", "3 to 10 %"),
+    (20.0, "#440154", "10 to 20 %"),
+    (math.inf, INK, "above 20 %"),
+)
+_UNKNOWN = ("#aab4c0", "not known")
+_LEVELS = {"warning": ("o", "#e69f00", "warning"), "error": ("x", "#c02600", "error")}
+_CRITERION = 100.0
+_WIDTH, _HEIGHT = 660, 490
+_ROOM = (0.055, 0.06)  # of the axes: what a number under a mark needs on either side
+
+
+def plan_map(data: PlanFigureData) -> str | None:
+    """Draw the plan, or return None where no record has a frequency and an amplitude.
+
+    Each test is coloured by its force noise, ringed where a warning concerns it and crossed where
+    an error does. The lines of Dean number 100 have slope -1: constant speed amplitude.
+
+    Parameters
+    ----------
+    data : PlanFigureData
+        The tests and the device's Dean numbers.
+
+    Returns
+    -------
+    str or None
+        One ``<svg>`` element.
+    """
+    if not data.tests:
+        return None
+    with house_style():
+        figure = new_figure(_WIDTH, _HEIGHT)
+        axes = figure.add_subplot()
+        amplitudes = [1e3 * t.amplitude for t in data.tests]
+        plan_limits(axes, [t.frequency for t in data.tests], amplitudes)
+        _criterion_lines(axes, data)
+        _points(axes, data.tests)
+        _findings(axes, data.tests)
+        _numbers(axes, data.tests)
+        plan_labels(axes)
+        figure.legend(
+            loc="outside upper left",
+            ncols=4,
+            handletextpad=0.4,
+            columnspacing=1.4,
+            title="Noise of the force",
+            title_fontsize=9.0,
+            alignment="left",
+        )
+        title = "Map of the planned tests, coloured by the noise of their force"
+        return to_svg(figure, name="plan", title=title)
+
+
+def _noise_class(test: PlannedTest) -> tuple[str, str]:
+    """Return the colour and the name of the class that a test's noise lies in."""
+    if test.noise_percent is None:
+        return _UNKNOWN
+    noise = test.noise_percent
+    return next((colour, name) for limit, colour, name in _CLASSES if noise < limit)
+
+
+def _points(axes: Axes, tests: Sequence[PlannedTest]) -> None:
+    """Draw fitted and held-out tests of each noise class as one group."""
+    classes = [*((c, n) for _, c, n in _CLASSES), _UNKNOWN]
+    for colour, name in classes:
+        for held_out in (False, True):
+            group = [t for t in tests if (_noise_class(t)[1], t.held_out) == (name, held_out)]
+            if not group:
+                continue
+            axes.plot(
+                [t.frequency for t in group],
+                [1e3 * t.amplitude for t in group],
+                linestyle="none",
+                marker="o",
+                markersize=9.0,
+                markerfacecolor="white" if held_out else colour,
+                markeredgecolor=colour if held_out else "white",
+                markeredgewidth=1.8 if held_out else 0.7,
+                label=f"{name}, held out" if held_out else name,
+                zorder=4,
+            )
+
+
+def _findings(axes: Axes, tests: Sequence[PlannedTest]) -> None:
+    for level, (marker, colour, name) in _LEVELS.items():
+        group = [t for t in tests if t.level == level]
+        if not group:
+            continue
+        axes.plot(
+            [t.frequency for t in group],
+            [1e3 * t.amplitude for t in group],
+            linestyle="none",
+            marker=marker,
+            markersize=15.0,
+            markerfacecolor="none",
+            markeredgecolor=colour,
+            markeredgewidth=2.0,
+            label=name,
+            zorder=5,
+        )
+
+
+def _numbers(axes: Axes, tests: Sequence[PlannedTest]) -> None:
+    """Write the noise under each sine test that has room for it."""
+    places = [_place(axes, t) for t in tests]
+    for index, test in enumerate(tests):
+        if test.kind != "sine" or test.noise_percent is None:
+            continue
+        x, y = places[index]
+        near = (
+            abs(x - u) < _ROOM[0] and abs(y - v) < _ROOM[1]
+            for other, (u, v) in enumerate(places)
+            if other != index
+        )
+        if any(near):
+            continue
+        axes.annotate(
+            f"{test.noise_percent:.2g} %",
+            (test.frequency, 1e3 * test.amplitude),
+            xytext=(0, -9),
+            textcoords="offset points",
+            fontsize=8.0,
+            color=MUTED,
+            ha="center",
+            va="top",
+            zorder=6,
+        )
+
+
+def _place(axes: Axes, test: PlannedTest) -> tuple[float, float]:
+    """Return where a test stands on the axes, each coordinate in [0, 1]."""
+    pairs = ((test.frequency, axes.get_xlim()), (1e3 * test.amplitude, axes.get_ylim()))
+    x, y = (math.log(value / low) / math.log(high / low) for value, (low, high) in pairs)
+    return x, y
+
+
+def _criterion_lines(axes: Axes, data: PlanFigureData) -> None:
+    """Draw the tests at Dean number 100, by either convention, where they lie on the axes."""
+    lowest, highest = speed_range(axes)
+    styles: tuple[tuple[str, float | None, Any], ...] = (
+        ("paper", data.dean_per_speed_paper, (0, (5, 2.5))),
+        ("standard", data.dean_per_speed_standard, DOTTED),
+    )
+    for convention, per_speed, linestyle in styles:
+        if per_speed and lowest < _CRITERION / per_speed < highest:
+            dean_line(
+                axes,
+                _CRITERION / per_speed,
+                f"De {_CRITERION:g}, {convention} convention",
+                linestyle=linestyle,
+                linewidth=1.2,
+            )
