@@ -19,7 +19,8 @@ from models.device import Device
 from models.flow import critical_frequency
 from models.fractional import harmonic_factors
 from models.motion import Motion
-from models.terms import Term, find_term
+from models.terms import TERMS, Shape, Term, find_term, own_terms
+from models.terms.own import same_file
 
 _HARMONIC_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
 
@@ -40,21 +41,20 @@ class FittedTerm:
     """In `unit`."""
     shape: Mapping[str, float] = field(default_factory=dict)
     """Shape parameters, SI."""
+    term: Term = field(init=False, repr=False, compare=False)
+    """The entry of the vocabulary."""
 
     def __post_init__(self) -> None:
-        """Check the names and values; fill in defaults."""
+        """Look the term up; check the names and values; fill in defaults."""
+        object.__setattr__(self, "term", find_term(self.id))
         shape = self.term.shape(self.shape)
         object.__setattr__(self, "shape", MappingProxyType(shape))
         number(f"coefficient of {self.id}", self.coefficient)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle by value (a mapping proxy can't be pickled)."""
-        return (FittedTerm, (self.id, self.coefficient, dict(self.shape)))
-
-    @property
-    def term(self) -> Term:
-        """The entry of the vocabulary."""
-        return find_term(self.id)
+        values = (self.id, self.coefficient, dict(self.shape))
+        return (FittedTerm, values) if self.term.source is None else (_own, (self.term, *values))
 
     @property
     def unit(self) -> str:
@@ -62,20 +62,58 @@ class FittedTerm:
         return self.term.unit.format(**{k: f"{v:.4g}" for k, v in self.shape.items()})
 
     def to_dict(self) -> dict[str, Any]:
-        """Return id, coefficient, unit and shape parameters, flat as in documents."""
-        return {
+        """Return id, coefficient, unit and shape parameters, flat as in documents.
+
+        A user's own term comes with its file's name and hash.
+        """
+        result = {
             "id": self.id, "coefficient": self.coefficient, "unit": self.unit, **self.shape
         }
+        source = self.term.source
+        return result if source is None else {**result, "source": source.to_dict()}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], *, where: str = "") -> FittedTerm:
-        """Read what `to_dict` wrote; further keys (intervals) are passed over."""
+        """Read what `to_dict` wrote; further keys (intervals) are passed over.
+
+        Raises
+        ------
+        InputError
+            For what is no term, and for a user's own that is not in the vocabulary from the same
+            file: wrap the call in `models.terms.own_terms`.
+        """
         for key in ("id", "coefficient"):
             if key not in data:
                 raise InputError(f"key {key!r} of a term", expected="given", where=where)
+        _check_source(str(data["id"]), data.get("source"), where)
         names = {p.name for p in find_term(str(data["id"]), where=where).parameters}
         shape = {k: float(v) for k, v in data.items() if k in names}
         return cls(str(data["id"]), number("coefficient", data["coefficient"], where=where), shape)
+
+
+def _own(term: Term, identifier: str, coefficient: float, shape: Shape) -> FittedTerm:
+    """Return a fitted term of a user's own in a process that may not know it."""
+    with own_terms(term):
+        return FittedTerm(identifier, coefficient, shape)
+
+
+def _check_source(identifier: str, source: Any, where: str) -> None:
+    """Check that a term stored with a file is known from that file."""
+    if source is None:
+        return
+    if not isinstance(source, Mapping) or not isinstance(source.get("sha256"), str):
+        raise InputError(
+            f"source of {identifier!r}", expected="a file with its sha256", found=repr(source),
+            where=where,
+        )  # fmt: skip
+    if identifier not in TERMS:
+        raise InputError(
+            f"effect {identifier!r}",
+            expected=f"given with its file {source.get('file', '')}"
+            f" (sha256 {source['sha256'][:12]}…, --effect-file)",
+            found="none", where=where,
+        )  # fmt: skip
+    same_file(TERMS[identifier], source["sha256"], where=where)
 
 
 @dataclass(frozen=True)
@@ -194,6 +232,7 @@ class SegmentedModel:
             "convention": self.convention,
             "bands": [
                 {
+                    "name": b.model.name,
                     "lower": b.lower,
                     "upper": b.upper,
                     "coordinate": self.coordinate,

@@ -35,8 +35,13 @@ def gap(
     ] = False,
     effects: Annotated[
         str | None,
-        typer.Option("--effects", metavar="ID,ID,…", help="Name only these effects."),
+        typer.Option(
+            "--effects",
+            metavar="ID,FILE.py,…",
+            help="Name only these effects, and those of --effect-file.",
+        ),
     ] = None,
+    effect_files: options.EffectFiles = None,
     on: Annotated[
         str,
         typer.Option(
@@ -57,16 +62,20 @@ def gap(
 
     # Loaded here: --help and complaints about options need no numerics.
     from discover.cli.named_model import named_model
+    from discover.cli.own_effects import asked_effects
     from discover.gap import close_gap, term_ids
     from discover.motion_gap import motion_before_and_after, require_system
-    from discover.naming.candidates import EFFECTS
     from discover.readers import read_campaign
     from discover.report.document import json_text
     from discover.report.gap import gap_figures, gap_lines, gap_report
     from models.constitutive import ForceModel
+    from models.terms import TERMS, own_terms
 
-    for name in only or ():
-        one_of("effect", name, EFFECTS, where="--effects")
+    with working("Reading effects"):
+        named, own = asked_effects(only, effect_files)
+    context.with_resource(own_terms(*own))
+    for name in named or ():
+        one_of("effect", name, sorted(TERMS), where="--effects")
     if model.startswith(_FIT):
         term_ids(model)
     with working(f"Reading {campaign}"):
@@ -75,8 +84,12 @@ def gap(
         require_system(measured)
     chosen = model if model.startswith(_FIT) else named_model(model, measured.device)
     with working(f"Comparing {len(measured.records)} records"):
-        found = close_gap(measured, chosen, fixed=fixed, effects=only, seed=seed, jobs=jobs)
+        found = close_gap(measured, chosen, fixed=fixed, effects=named, seed=seed, jobs=jobs)
     document = found.to_dict()
+    if own:
+        document["own_effects"] = [
+            {"id": t.id, **t.source.to_dict()} for t in own if t.source is not None
+        ]
     if on == "motion":
         with working("Moving the carried system"):
             before = ForceModel(found.baseline, "baseline")

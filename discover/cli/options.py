@@ -61,6 +61,14 @@ Convention = Annotated[
 Criterion = Annotated[
     float, typer.Option("--criterion", help="Dean number that the check holds the boundary to.")
 ]
+EffectFiles = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--effect-file",
+        metavar="FILE.py",
+        help="A Python file that defines an effect of your own; may be given again.",
+    ),
+]
 
 
 def grid(text: str | None, *, where: str) -> tuple[float, ...] | None:

@@ -12,6 +12,7 @@ from models.checks import InputError
 
 
 def simulate(
+    context: typer.Context,
     arguments: Annotated[
         list[str],
         typer.Argument(
@@ -20,6 +21,7 @@ def simulate(
             " campaign's folder.",
         ),
     ],
+    effect_files: options.EffectFiles = None,
     out: options.Out = None,
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
@@ -42,10 +44,15 @@ def simulate(
 
     # Loaded here: --help and complaints about options need no numerics.
     from discover.cli.named_model import named_model
+    from discover.cli.own_effects import own_effects
     from discover.readers import read_campaign
     from discover.report.simulation import simulation_lines
     from discover.simulate import simulate_forces
+    from models.terms import own_terms
 
+    with working("Reading effects"):
+        own = own_effects(effect_files)
+    context.with_resource(own_terms(*own))
     with working(f"Reading {campaign}"):
         measured = read_campaign(campaign)
         models = {name: named_model(name, measured.device, where=name) for name in names}

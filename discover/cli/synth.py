@@ -59,6 +59,7 @@ def synth(
     held_out: Annotated[
         int, typer.Option("--held-out", min=0, help="How many records are marked as held out.")
     ] = 0,
+    effect_files: options.EffectFiles = None,
     title: Annotated[str | None, typer.Option("--title", help="Of the campaign.")] = None,
     seed: options.Seed = options.DEFAULT_SEED,
 ) -> int:
@@ -72,9 +73,14 @@ def synth(
     check_replaceable(folder, fresh=True)
 
     from discover.cli.known_device import known_device
+    from discover.cli.own_effects import own_effects
     from discover.cli.synthesis import campaign_files, model_records, rig_records
     from models.rig import Limits, sine_plan
+    from models.terms import own_terms
 
+    with working("Reading effects"):
+        own = own_effects(effect_files)
+    context.with_resource(own_terms(*own))
     tested = known_device(device)
     limits = Limits()
     plan = sine_plan(

@@ -15,13 +15,13 @@ from discover.gap.result import Gap, NamedEffect, RecordGap
 from discover.gap.search import Round, Search, Stage, search
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import Observation, observe
-from discover.naming.candidates import EFFECTS
 from discover.naming.contest import AGREES, UNKNOWN, Contest
 from discover.naming.fit import whole_model
 from discover.naming.forces import model_force
 from discover.records import Campaign, Finding
 from models.checks import InputError, one_of
 from models.constitutive import Band, ForceModel, SegmentedModel
+from models.terms import TERMS
 
 _STATED = 0.97  # of the probability that the alternatives add up to
 _LEAST_STATED = 0.02
@@ -51,7 +51,8 @@ def close_gap(
     fixed : bool
         Hold the model's coefficients instead of refitting them with each effect.
     effects : sequence of str, optional
-        Ids that may be named; the whole catalogue where not given.
+        Ids that may be named; the whole vocabulary where not given, with what is added by
+        `models.terms.own_terms`.
     seed : int
         Kept in the document; the search draws nothing at random.
     jobs : int
@@ -72,9 +73,10 @@ def close_gap(
             "records", expected="at least one that is not held out", found="none",
             where=campaign.source,
         )
-    chosen = EFFECTS if effects is None else tuple(effects)
+    known = tuple(sorted(TERMS))
+    chosen = known if effects is None else tuple(effects)
     for name in chosen:
-        one_of("effect", name, EFFECTS, where="effects")
+        one_of("effect", name, known, where="effects")
     observations = _observe(campaign, jobs)
     baseline = prepare_baseline(observations, model, fixed=fixed)
     found = search(baseline, chosen)

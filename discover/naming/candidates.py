@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from discover.motion_fit import Observation
+from models.motion import sine_motion
 from models.terms import TERMS
-
-EFFECTS = tuple(sorted(TERMS))
+from models.terms.trials import chosen_parameters, trial_shapes, trial_size
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,24 @@ def variants(effect: str, scales: Scales) -> list[Variant]:
         For an effect that is not in the catalogue.
     """
     maker = _MAKERS.get(effect)
-    return [_one(effect)] if maker is None else maker(scales)
+    return _spread(effect, scales) if maker is None else maker(scales)
+
+
+def _spread(effect: str, scales: Scales) -> list[Variant]:
+    """Return the shapes that a term's own parameters give."""
+    term = TERMS[effect]
+    sizes = {"displacement": scales.displacement, "speed": scales.speed, "force": scales.force}
+    number, shapes = chosen_parameters(term), trial_shapes(term, sizes)
+    if term.transform is None:
+        return [Variant(effect, (Part(effect, s),), number) for s in shapes]
+    frequency = scales.speed / scales.displacement / (2.0 * np.pi)
+    motion = sine_motion(scales.displacement, frequency)
+    carried = motion.acceleration * (2.0 * np.pi * frequency) ** -1 + motion.velocity
+    force = carried * scales.force / float(np.abs(carried).max())
+    return [
+        Variant(effect, (Part(effect, s, trial_size(term, s, motion, force)),), number)
+        for s in shapes
+    ]
 
 
 def _power(scales: Scales) -> list[Variant]:

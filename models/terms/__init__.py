@@ -1,17 +1,28 @@
-"""The vocabulary: one file a term. To add one, write a file here that defines ``TERM``."""
+"""The vocabulary: one file a term. To add one, write a file here that defines ``TERM``.
 
+A user's own term stands in a file elsewhere: `load_term` reads it and `own_terms` adds it for the
+length of a block.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
+from pathlib import Path
 from pkgutil import iter_modules
 
-from models.checks import one_of
-from models.terms.term import Parameter, Shape, Term
+from models.checks import InputError, one_of
+from models.terms.own import read_term
+from models.terms.term import Parameter, Shape, Term, TermSource
 
 TERMS: dict[str, Term] = {
     term.id: term
     for module in sorted(info.name for info in iter_modules(__path__))
     if (term := getattr(import_module(f"{__name__}.{module}"), "TERM", None)) is not None
 }
-"""Every term by its id."""
+"""Every term by its id: the catalogue, and within `own_terms` the user's own."""
+
+CATALOGUE = tuple(sorted(TERMS))
+"""Ids that are always there."""
 
 
 def find_term(identifier: str, *, where: str = "") -> Term:
@@ -25,4 +36,88 @@ def find_term(identifier: str, *, where: str = "") -> Term:
     return TERMS[one_of("term", identifier, sorted(TERMS), where=where)]
 
 
-__all__ = ["TERMS", "Parameter", "Shape", "Term", "find_term"]
+def load_term(path: str | Path) -> Term:
+    """Return a user's own term from a Python file that defines ``TERM``, checked.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, written as those of ``models/terms``. Reading it runs it.
+
+    Returns
+    -------
+    Term
+        For `own_terms`. It can be pickled: another process reads the file again.
+
+    Raises
+    ------
+    InputError
+        Where the file or what it defines is at fault, with the line where there is one.
+    """
+    term = read_term(path)
+    if term.id in CATALOGUE:
+        raise InputError(
+            "id of TERM", expected="one that the catalogue does not have", found=repr(term.id),
+            where=str(path),
+        )  # fmt: skip
+    return term
+
+
+@contextmanager
+def own_terms(*terms: Term) -> Iterator[None]:
+    """Add terms to the vocabulary for the length of a ``with`` block.
+
+    Parameters
+    ----------
+    *terms : Term
+        From `load_term`. One that is there already, from the same file, is passed over.
+
+    Raises
+    ------
+    InputError
+        Where two terms have one id.
+
+    Examples
+    --------
+    >>> drag = Term("air-drag", "N s^3/m^3", "c v^3", lambda motion, shape: motion.velocity**3)
+    >>> with own_terms(drag):
+    ...     find_term("air-drag").unit
+    'N s^3/m^3'
+    >>> "air-drag" in TERMS
+    False
+    """
+    added: list[str] = []
+    try:
+        for term in terms:
+            there = TERMS.get(term.id)
+            if there is None:
+                TERMS[term.id] = term
+                added.append(term.id)
+            elif not _same(there, term):
+                raise InputError(
+                    "effects", expected="of different ids", found=f"{term.id} twice",
+                    where="" if term.source is None else str(term.source.path),
+                )  # fmt: skip
+        yield
+    finally:
+        for name in added:
+            del TERMS[name]
+
+
+def _same(one: Term, other: Term) -> bool:
+    if one.source is None or other.source is None:
+        return one == other
+    return one.id == other.id and one.source.sha256 == other.source.sha256
+
+
+__all__ = [
+    "CATALOGUE",
+    "TERMS",
+    "Parameter",
+    "Shape",
+    "Term",
+    "TermSource",
+    "find_term",
+    "load_term",
+    "own_terms",
+]
