@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -14,23 +14,23 @@ from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
+from models.terms import Term
 
 _POINTS = 600
 _SHOWN = 400
 _CYCLES = 2.0
 _FOLLOWS = {
-    "inertia": ("acceleration", "m/s^2"),
-    "stiffness": ("displacement", "m"),
-    "cubic-stiffness": ("displacement", "m"),
-    "end-stop": ("displacement", "m"),
-    "hysteresis": ("displacement", "m"),
-    "backlash": ("displacement", "m"),
-    "position-dependent-friction": ("displacement", "m"),
-    "sensor-drift": ("time", "s"),
-    "thermal-drift": ("time", "s"),
+    "inertia": "acceleration",
+    "stiffness": "displacement",
+    "cubic-stiffness": "displacement",
+    "end-stop": "displacement",
+    "hysteresis": "displacement",
+    "backlash": "displacement",
+    "position-dependent-friction": "displacement",
+    "sensor-drift": "time",
+    "thermal-drift": "time",
 }
-
-
+_UNITS = {"velocity": "m/s", "displacement": "m", "acceleration": "m/s^2", "time": "s"}
 _LOOPS = ("time-delay", "series-compliance", "sensor-gain", "sensor-clipping", "cavitation",
           "fractional-derivative", "backlash")
 
@@ -95,14 +95,19 @@ def shape_of(
     ]
     r = rows[int(np.argmax(sizes))]
     o = r.observation
-    abscissa, unit = _FOLLOWS.get(entry.effect, ("velocity", "m/s"))
-    source = {
+    sources = {
         "velocity": o.motion.velocity,
         "displacement": o.motion.displacement,
         "acceleration": o.motion.acceleration,
         "time": o.motion.time - o.motion.time[0],
-    }[abscissa]
-    along, force = o.at_samples(source), o.at_samples(change(r))
+    }
+    added = change(r)
+    abscissa = _FOLLOWS.get(entry.effect, "velocity")
+    term = next((t.term for t in model.terms if t.id == entry.effect), None)
+    if term is not None and term.source is not None:
+        abscissa = _followed(term, sources, added)
+    unit = _UNITS[abscissa]
+    along, force = o.at_samples(sources[abscissa]), o.at_samples(added)
     left = o.measured - o.at_samples(model_force(o, whole_model(r, rest)))
     stop = along.size
     if o.kind == "sine" and abscissa != "time":
@@ -118,6 +123,17 @@ def shape_of(
     )
 
 
+def _followed(term: Term, sources: Mapping[str, Array], force: Array) -> str:
+    """Return what a user's effect is best drawn over: that along which its force varies least."""
+    if term.follows == "time":
+        return "time"
+    if term.follows == "path":
+        return "displacement"
+
+    def variation(name: str) -> float:
+        return float(np.abs(np.diff(force[np.argsort(sources[name], kind="stable")])).sum())
+
+    return min(("velocity", "displacement", "acceleration"), key=variation)
 
 
 def added_to(whole: SegmentedModel, terms: Sequence[FittedTerm]) -> SegmentedModel:
