@@ -192,13 +192,25 @@ def _divergence(means: Sequence[Array], covariances: Sequence[Array]) -> float:
     return 0.5 * float(trace - shift.size + shift @ inverse @ shift + logs[1] - logs[0])
 
 
-def sine_rows(frequency: float, amplitude: float, dictionary: Dictionary) -> Array:
-    """Return (R, K) rows of the columns' lowest lines in a sine test; the delay's are zero."""
+def sine_rows(
+    frequency: float, amplitude: float, dictionary: Dictionary, *, lines: int = _LINES
+) -> Array:
+    """Return (2 L, K) rows of the columns' lowest L lines in a sine test; the delay's are zero.
+
+    Parameters
+    ----------
+    frequency, amplitude : float
+        Of the test, Hz and m.
+    dictionary : Dictionary
+        Of the columns.
+    lines : int
+        L, the mean included; at most 65.
+    """
     motion = sine_motion(amplitude, frequency, samples=_SAMPLES)
     columns = dictionary.evaluate(motion)
-    lines = np.fft.rfft(columns, axis=-1)[:, :_LINES] * (np.sqrt(2.0) / _SAMPLES)
-    lines[:, 0] /= np.sqrt(2.0)
-    rows = real_rows(lines).T
+    found = np.fft.rfft(columns, axis=-1)[:, :lines] * (np.sqrt(2.0) / _SAMPLES)
+    found[:, 0] /= np.sqrt(2.0)
+    rows = real_rows(found).T
     return np.column_stack([rows, np.zeros(rows.shape[0])]) if dictionary.has(DELAY) else rows
 
 

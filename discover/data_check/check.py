@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from discover.data_check.added_test import added_test
 from discover.data_check.conditioning import conditioning
 from discover.data_check.figures import plan_figure_data
+from discover.data_check.plan import plan_rows
 from discover.data_check.result import AddedTest, Conditioning, DataCheck, Inseparable, Pair
 from discover.data_check.separation import expected_pairs, inseparable_pairs
 from discover.record_checks import RecordCheck, check_records
@@ -46,7 +47,8 @@ def check_campaign(campaign: Campaign, options: StudyOptions | None = None) -> D
     more: AddedTest | None = None
     if campaign.fitted:
         prepared = prepare(campaign, chosen)
-        windows, dictionary = prepared.fitted, prepared.dictionary
+        dictionary = prepared.dictionary
+        windows = plan_rows(prepared.fitted, prepared.observations, dictionary)
         structures = conditioning(windows, dictionary)
         pairs = expected_pairs(windows, dictionary)
         inseparable = inseparable_pairs(pairs, windows)

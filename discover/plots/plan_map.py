@@ -13,13 +13,13 @@ from discover.plots.plan_axes import DOTTED, dean_line, plan_labels, plan_limits
 from discover.plots.style import INK, MUTED, house_style, new_figure, to_svg
 
 _CLASSES = (
-    (1.0, "#5ec962", "below 1 %"),
-    (3.0, "#21918c", "1 to 3 %"),
-    (10.0, "#3b528b", "3 to 10 %"),
-    (20.0, "#440154", "10 to 20 %"),
-    (math.inf, INK, "above 20 %"),
+    (0.5, "#5ec962", "noise below 0.5 %"),
+    (2.0, "#21918c", "noise 0.5 to 2 %"),
+    (5.0, "#3b528b", "noise 2 to 5 %"),
+    (20.0, "#7b1fa2", "noise 5 to 20 %"),
+    (math.inf, INK, "noise above 20 %"),
 )
-_UNKNOWN = ("#aab4c0", "not known")
+_UNKNOWN = ("#aab4c0", "noise not known")
 _LEVELS = {"warning": ("o", "#e69f00", "warning"), "error": ("x", "#c02600", "error")}
 _CRITERION = 100.0
 _WIDTH, _HEIGHT = 660, 490
@@ -56,12 +56,9 @@ def plan_map(data: PlanFigureData) -> str | None:
         plan_labels(axes)
         figure.legend(
             loc="outside upper left",
-            ncols=4,
+            ncols=3,
             handletextpad=0.4,
             columnspacing=1.4,
-            title="Noise of the force",
-            title_fontsize=9.0,
-            alignment="left",
         )
         title = "Map of the planned tests, coloured by the noise of their force"
         return to_svg(figure, name="plan", title=title)
@@ -139,7 +136,8 @@ def _numbers(axes: Axes, tests: Sequence[PlannedTest]) -> None:
             color=MUTED,
             ha="center",
             va="top",
-            zorder=6,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.6},
+            zorder=3,
         )
 
 
@@ -159,10 +157,7 @@ def _criterion_lines(axes: Axes, data: PlanFigureData) -> None:
     )
     for convention, per_speed, linestyle in styles:
         if per_speed and lowest < _CRITERION / per_speed < highest:
-            dean_line(
-                axes,
-                _CRITERION / per_speed,
-                f"De {_CRITERION:g}, {convention} convention",
-                linestyle=linestyle,
-                linewidth=1.2,
-            )
+            text = f"De {_CRITERION:g}"
+            look = {"color": MUTED, "linestyle": linestyle, "linewidth": 1.2}
+            dean_line(axes, _CRITERION / per_speed, text, **look)
+            axes.plot([], [], label=f"{text}, {convention} convention", **look)

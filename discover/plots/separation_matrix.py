@@ -14,9 +14,9 @@ from discover.plots.style import INK, MUTED, STRUCTURE_COLOURS, house_style, new
 
 _OPEN = ("#f3b34c", INK, f"below {TELLING:.0f} nats: can't be told apart")
 _TOLD = (
-    (10.0, "#dbe9f5", INK, f"{TELLING:.0f} to 10"),
-    (100.0, "#9cc6e4", INK, "10 to 100"),
-    (math.inf, "#2476ad", "white", "above 100: told apart"),
+    (10.0, "#dbe9f5", INK, f"{TELLING:.0f} to 10 nats"),
+    (100.0, "#9cc6e4", INK, "10 to 100 nats"),
+    (math.inf, "#2476ad", "white", "above 100 nats: told apart"),
 )
 _NESTED = ("#eef1f5", MUTED, "nested: holds the other as a case")
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -45,7 +45,7 @@ def separation_matrix(document: Mapping[str, Any]) -> str | None:
     gaps = {(g["truth"], g["model"]): g for pair in document["pairs"] for g in pair["expected"]}
     with house_style():
         figure = new_figure(660, 430)
-        matrix, bars = figure.subplots(1, 2, width_ratios=(4.0, 1.35), sharey=True)
+        matrix, bars = figure.subplots(1, 2, width_ratios=(4.0, 1.2), sharey=True)
         _cells(matrix, names, gaps)
         _conditions(bars, structures)
         figure.legend(
@@ -98,7 +98,7 @@ def _cells(
                 ha="center",
                 va="center",
                 color=ink,
-                fontsize=9.5 if nested else 10.5,
+                fontsize=9.5,
                 fontweight="normal" if nested else "bold",
             )
     axes.set_xlim(-0.5, count - 0.5)
@@ -142,6 +142,9 @@ def _conditions(axes: Axes, structures: Sequence[Mapping[str, Any]]) -> None:
         )
     axes.set_xscale("log")
     axes.set_xlim(1.0, right)
+    decades = [10.0**d for d in range(math.ceil(math.log10(right)) + 1) if 10.0**d <= right]
+    axes.set_xticks(decades, [f"{d:g}" for d in decades])
+    axes.minorticks_off()
     axes.tick_params(axis="y", length=0, labelleft=False)
     axes.grid(visible=False, axis="y")
     axes.spines["left"].set_visible(False)

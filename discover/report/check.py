@@ -117,8 +117,8 @@ def next_step(document: Mapping[str, Any], *, campaign: str) -> str:
         )
     nats = float(test["gap_nats"])
     place = (
-        f"add a test at {significant(test['frequency_hz'], 3)} Hz and"
-        f" {significant(1e3 * test['amplitude_m'], 3)} mm"
+        f"add a test at {significant(test['frequency_hz'], 2)} Hz and"
+        f" {significant(1e3 * test['amplitude_m'], 2)} mm"
     )
     pair = listed(test["structures"], last="from")
     if nats < TELLING:
@@ -127,8 +127,8 @@ def next_step(document: Mapping[str, Any], *, campaign: str) -> str:
             f" {nats_text(nats)} nats only{_quieter(nats)}. {as_it_is}"
         )
     return (
-        f"{place}: every two structures would then differ by {nats_text(nats)} nats or more, and"
-        f" {significant(TELLING, 2)} are needed. Then run {again} again. {as_it_is}"
+        f"{place}: what can't be told apart now would then differ by {nats_text(nats)} nats or"
+        f" more, and {significant(TELLING, 2)} are needed. Then run {again} again. {as_it_is}"
     )
 
 
@@ -166,10 +166,20 @@ def _plan_lines(document: Mapping[str, Any]) -> list[str]:
         for s in document["structures"]
         if s["rank"] < s["columns"]
     ]
-    lines += [f"Can't be told apart: {pair['why']}." for pair in document["inseparable"]]
+    lines += [f"Can't be told apart: {why}." for why in _reasons(document["inseparable"])]
     if not document["inseparable"]:
         lines.append("Plan: these tests can tell the four structures apart at their noise.")
     return lines
+
+
+def _reasons(inseparable: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return why pairs can't be told apart, those with one reason in one sentence."""
+    pairs: dict[str, list[str]] = {}
+    for entry in inseparable:
+        pair = " and ".join(entry["structures"])
+        before, _, after = str(entry["why"]).partition(pair)
+        pairs.setdefault(f"{before}{{}}{after}", []).append(pair)
+    return [reason.replace("{}", ", ".join(named)) for reason, named in pairs.items()]
 
 
 def _plan_caption(data: PlanFigureData) -> str:

@@ -89,6 +89,32 @@ def test_check_passes_good_records_and_writes_its_document(campaign, here, capsy
     assert np.mean(noise) == pytest.approx(0.5, rel=0.15)
 
 
+def test_check_writes_its_report_and_pictures_and_says_what_comes_next(campaign, here, capsys):
+    assert main(["check", str(campaign)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    folder = Path("inerter-out", "check-laminar")
+    assert lines[-1] == f"Report: {folder / 'report.html'}"
+    assert any(line.startswith("Next: ") and "inerter discover" in line for line in lines)
+    written = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()}
+    assert written - {".inerter-files"} == {
+        "check.json",
+        "report.html",
+        "figures/plan.svg",
+        "figures/separation.svg",
+    }
+    plan = (folder / "figures" / "plan.svg").read_text()
+    assert "Frequency (Hz)" in plan
+    assert "Displacement amplitude (mm)" in plan
+    document = json.loads((folder / "check.json").read_text())
+    assert [s["name"] for s in document["structures"]] == [
+        "FOIM",
+        "IOIM-linear",
+        "IOIM-laminar",
+        "IOIM-turbulent",
+    ]
+    assert len(document["pairs"]) == 6
+
+
 def test_check_fails_where_the_force_has_the_wrong_sign(campaign, here, capsys):
     turned = here / "turned"
     turned.mkdir()

@@ -6,27 +6,9 @@ import pytest
 from discover.data_check import check_campaign
 from discover.data_check.nominal import TELLING
 from discover.data_check.separation import expected_pairs, inseparable_pairs
-from discover.records import Campaign, Record
 from discover.study.options import StudyOptions
 from discover.study.preparation import prepare
-
-PLAN = ((0.5, 0.01), (1.0, 0.01), (2.0, 0.01), (2.0, 0.005), (6.0, 0.005), (12.0, 0.005))
-
-
-def record(frequency, amplitude, *, noise=0.02, seed=0, **options):
-    """A mass with a damper on a sine test, eight cycles at a hundred samples each."""
-    generator = np.random.default_rng([seed, round(100 * frequency), round(1e4 * amplitude)])
-    time = np.arange(800) / (100.0 * frequency)
-    omega = 2.0 * np.pi * frequency
-    x = amplitude * np.sin(omega * time)
-    force = -370.0 * omega**2 * x + 4000.0 * amplitude * omega * np.cos(omega * time)
-    force += noise * np.std(force) * generator.standard_normal(time.size)
-    name = f"{frequency:g}-{1e3 * amplitude:g}.csv"
-    return Record(name, time, force, displacement=x, **options)
-
-
-def campaign(plan, **options):
-    return Campaign("plan", tuple(record(f, a, **options) for f, a in plan))
+from tests.discover.data_check.plan import SINGLE, WIDE, campaign, record
 
 
 def expected_gap(truth, model, windows, dictionary):
@@ -41,13 +23,12 @@ def open_pairs(prepared):
 
 @pytest.fixture(scope="module")
 def wide():
-    return prepare(campaign(PLAN), StudyOptions())
+    return prepare(campaign(WIDE), StudyOptions())
 
 
 @pytest.fixture(scope="module")
 def single():
-    plan = ((2.0, 0.005), (2.0, 0.01), (2.0, 0.02))
-    return prepare(campaign(plan), StudyOptions())
+    return prepare(campaign(SINGLE), StudyOptions())
 
 
 def test_at_one_frequency_a_fractional_order_is_mass_and_damper(single):
@@ -80,7 +61,7 @@ def test_the_gap_falls_with_the_square_of_the_noise(wide, truth):
 def test_the_gap_equals_least_squares_on_the_samples_themselves(wide):
     """The same question asked in the time domain: exact columns, the records' white noise."""
     columns, truth, measured = [], [], []
-    for (frequency, amplitude), window in zip(PLAN, wide.fitted, strict=True):
+    for (frequency, amplitude), window in zip(WIDE, wide.fitted, strict=True):
         omega = 2.0 * np.pi * frequency
         phase = omega * np.arange(800) / (100.0 * frequency)
         test = record(frequency, amplitude, noise=0.0)
@@ -102,7 +83,7 @@ def test_the_gap_equals_least_squares_on_the_samples_themselves(wide):
 
 
 def test_much_noise_leaves_turbulent_and_laminar_friction_open():
-    prepared = prepare(campaign(PLAN[1:3], noise=0.3), StudyOptions())
+    prepared = prepare(campaign(WIDE[1:3], noise=0.3), StudyOptions())
     pairs = open_pairs(prepared)
     assert "speak with only" in pairs["IOIM-laminar", "IOIM-turbulent"].why
 
@@ -111,9 +92,43 @@ def test_a_plan_of_one_amplitude_can_not_decide_the_dean_check():
     checked = check_campaign(campaign(((0.5, 0.01), (1.0, 0.01), (2.0, 0.01))))
     assert any("all tests run at 10 mm" in f.text for f in checked.findings)
     assert checked.passed
-    assert not any("all tests run" in f.text for f in check_campaign(campaign(PLAN)).findings)
+    assert not any("all tests run" in f.text for f in check_campaign(campaign(WIDE)).findings)
 
 
 def test_a_plan_of_one_frequency_can_not_give_an_order():
     checked = check_campaign(campaign(((2.0, 0.005), (2.0, 0.02))))
     assert any("all tests run at 2 Hz" in f.text for f in checked.findings)
+
+
+def test_harmonics_of_the_drive_are_no_plan():
+    """Two percent of a second harmonic would formally tell an order at a single frequency."""
+    bent = campaign(SINGLE, second=0.02)
+    measured = prepare(bent, StudyOptions())
+    assert expected_gap("FOIM", "IOIM-linear", measured.fitted, measured.dictionary) > TELLING
+    checked = check_campaign(bent)
+    pairs = {p.structures: p for p in checked.pairs}
+    assert pairs["FOIM", "IOIM-linear"].nats < 1e-6
+    assert ("FOIM", "IOIM-linear") in {p.structures for p in checked.inseparable}
+
+
+def test_what_is_inseparable_is_what_the_pairs_say():
+    checked = check_campaign(campaign(SINGLE))
+    document = checked.to_dict()
+    assert len(document["pairs"]) == 6
+    stated = [(p["structures"], p["gap_nats"]) for p in document["pairs"] if not p["separable"]]
+    assert stated == [(p["structures"], p["gap"]) for p in document["inseparable"]]
+    for pair in document["pairs"]:
+        lesser = min(g["gap_nats"] for g in pair["expected"] if g["word"] != "nested")
+        assert pair["gap_nats"] == lesser
+        assert pair["separable"] == (lesser >= TELLING)
+
+
+def test_only_cases_of_a_structure_are_nested_in_it():
+    pairs = {p.structures: p for p in check_campaign(campaign(SINGLE)).pairs}
+    assert {names for names, p in pairs.items() if p.nested} == {
+        ("IOIM-linear", "IOIM-laminar"),
+        ("IOIM-linear", "IOIM-turbulent"),
+    }
+    for names, pair in pairs.items():
+        if pair.nested:
+            assert [g.word for g in pair.gaps] == ["nested", "separable"], names

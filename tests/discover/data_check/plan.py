@@ -1,0 +1,33 @@
+"""Plans of exact sine tests of a mass with a damper."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from discover.records import Campaign, Record
+
+WIDE = ((0.5, 0.01), (1.0, 0.01), (2.0, 0.01), (2.0, 0.005), (6.0, 0.005), (12.0, 0.005))
+SINGLE = ((2.0, 0.005), (2.0, 0.01), (2.0, 0.02))
+
+
+def record(frequency, amplitude, *, noise=0.02, second=0.0, seed=0, **options):
+    """Return eight cycles at a hundred samples each; `second` is the motion's second harmonic."""
+    generator = np.random.default_rng([seed, round(100 * frequency), round(1e4 * amplitude)])
+    time = np.arange(800) / (100.0 * frequency)
+    omega = 2.0 * np.pi * frequency
+    x, v, a = np.zeros((3, time.size))
+    for order, size in ((1, amplitude), (2, second * amplitude)):
+        phase = order * omega * time
+        x += size * np.sin(phase)
+        v += size * order * omega * np.cos(phase)
+        a -= size * (order * omega) ** 2 * np.sin(phase)
+    force = 370.0 * a + 4000.0 * v
+    force += noise * np.std(force) * generator.standard_normal(time.size)
+    name = f"{frequency:g}-{1e3 * amplitude:g}.csv"
+    return Record(name, time, force, displacement=x, **options)
+
+
+def campaign(plan, *, rig=None, device=None, **options):
+    """Return the campaign of a plan of (frequency, amplitude), Hz and m."""
+    records = tuple(record(f, a, **options) for f, a in plan)
+    return Campaign("plan", records, rig=rig, device=device)

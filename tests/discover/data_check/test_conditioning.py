@@ -1,0 +1,99 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from discover.data_check import check_campaign
+from discover.data_check.conditioning import conditioning
+from discover.data_check.plan import plan_rows
+from discover.study.options import StudyOptions
+from discover.study.preparation import prepare
+from tests.discover.data_check.plan import SINGLE, WIDE, campaign, record
+
+
+def by_name(items):
+    return {s.name: s for s in items}
+
+
+@pytest.fixture(scope="module")
+def single():
+    return check_campaign(campaign(SINGLE))
+
+
+@pytest.fixture(scope="module")
+def wide():
+    return check_campaign(campaign(WIDE))
+
+
+@pytest.fixture(scope="module")
+def rows():
+    prepared = prepare(campaign(WIDE), StudyOptions())
+    windows = plan_rows(prepared.fitted, prepared.observations, prepared.dictionary)
+    return windows, prepared.dictionary
+
+
+def test_at_one_frequency_both_structures_have_full_rank_but_share_their_forces(single):
+    found = by_name(single.structures)
+    assert (found["FOIM"].rank, found["FOIM"].columns) == (3, 3)
+    assert (found["IOIM-linear"].rank, found["IOIM-linear"].columns) == (3, 3)
+    pair = next(p for p in single.pairs if p.structures == ("FOIM", "IOIM-linear"))
+    # Velocity and acceleration are all that one frequency holds of any order; friction is a third.
+    assert (pair.rank, pair.columns) == (3, 5)
+
+
+def test_over_a_wide_plan_every_column_counts(wide):
+    assert all(s.rank == s.columns for s in wide.structures)
+    assert all(p.rank == p.columns for p in wide.pairs)
+    columns = {p.structures: p.columns for p in wide.pairs}
+    assert columns["FOIM", "IOIM-linear"] == 5
+    assert columns["IOIM-linear", "IOIM-laminar"] == 4
+    assert columns["IOIM-laminar", "IOIM-turbulent"] == 5
+
+
+def test_one_frequency_holds_a_fractional_order_and_its_slope_as_well_as_mass_and_damper(single):
+    """At one frequency both pairs are quadratures, and their angle to friction is the same."""
+    found = by_name(single.structures)
+    assert found["FOIM"].condition == pytest.approx(found["IOIM-linear"].condition, rel=1e-6)
+
+
+def test_the_condition_number_is_that_of_the_samples_themselves(rows):
+    """Singular values in the time domain: exact columns, each record's white noise."""
+    windows, dictionary = rows
+    columns = []
+    for (frequency, amplitude), window in zip(WIDE, windows, strict=True):
+        omega = 2.0 * np.pi * frequency
+        phase = omega * (np.arange(800) + 0.5) / (100.0 * frequency)
+        sigma = np.sqrt(window.noise_power)
+        velocity = amplitude * omega * np.cos(phase)
+        acceleration = -amplitude * omega**2 * np.sin(phase)
+        columns.append(np.stack([acceleration, velocity, np.sign(velocity)]) / sigma)
+    design = np.concatenate(columns, axis=1).T
+    values = np.linalg.svd(design / np.linalg.norm(design, axis=0), compute_uv=False)
+    white = [replace(w, variance=np.full_like(w.variance, w.noise_power / 800)) for w in windows]
+    found = by_name(conditioning(white, dictionary))["IOIM-linear"]
+    assert found.condition == pytest.approx(values[0] / values[-1], rel=0.03)
+
+
+def test_noise_takes_rank_but_leaves_the_condition_number(rows):
+    windows, dictionary = rows
+    quiet = by_name(conditioning(windows, dictionary))
+    louder = [replace(w, variance=1e6 * w.variance) for w in windows]
+    loud = by_name(conditioning(louder, dictionary))
+    # Friction's curve of reversal has a prior of its own, which noise weighs against.
+    assert loud["IOIM-linear"].condition == pytest.approx(quiet["IOIM-linear"].condition, rel=0.05)
+    assert quiet["IOIM-laminar"].rank == 4
+    assert loud["IOIM-laminar"].rank < 4
+
+
+def test_a_single_test_is_described_too():
+    checked = check_campaign(campaign(((2.0, 0.01),)))
+    assert [s.columns for s in checked.structures] == [3, 3, 4, 4]
+    assert all(s.condition is not None and s.condition >= 1.0 for s in checked.structures)
+
+
+def test_nothing_is_judged_where_every_record_is_held_out():
+    plan = replace(campaign(()), records=(record(2.0, 0.01, held_out=True),))
+    checked = check_campaign(plan)
+    assert (checked.structures, checked.pairs, checked.added_test) == ((), (), None)
+    assert not checked.passed
+    assert [t.held_out for t in checked.figure_data.tests] == [True]
