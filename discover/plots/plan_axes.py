@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 
 from discover.plots.style import MUTED, plain_log_axis
 
+_LEAST_SPAN = 5.0  # a factor that always holds two of the labels 1, 2, 5, 10
 DOTTED = (0, (1, 2.5))
 """The line style of a constant Dean number."""
 
@@ -17,7 +18,8 @@ def plan_limits(axes: Axes, frequencies: Sequence[float], amplitudes: Sequence[f
     """Make both axes logarithmic, with room around tests of these Hz and mm."""
     axes.set(xscale="log", yscale="log")
     for values, put in ((frequencies, axes.set_xlim), (amplitudes, axes.set_ylim)):
-        room = max(1.25, (max(values) / min(values)) ** 0.12)
+        span = max(values) / min(values)
+        room = max(1.25, span**0.12, math.sqrt(_LEAST_SPAN / span))
         put(min(values) / room, max(values) * room)
 
 

@@ -18,7 +18,7 @@ _TOLD = (
     (100.0, "#9cc6e4", INK, "10 to 100 nats"),
     (math.inf, "#2476ad", "white", "above 100 nats: told apart"),
 )
-_NESTED = ("#eef1f5", MUTED, "nested: holds the other as a case")
+_NESTED = ("#eef1f5", MUTED, "nested: the fitted one holds the true one")
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -44,14 +44,14 @@ def separation_matrix(document: Mapping[str, Any]) -> str | None:
     names = [str(s["name"]) for s in structures]
     gaps = {(g["truth"], g["model"]): g for pair in document["pairs"] for g in pair["expected"]}
     with house_style():
-        figure = new_figure(660, 430)
-        matrix, bars = figure.subplots(1, 2, width_ratios=(4.0, 1.2), sharey=True)
+        figure = new_figure(660, 450)
+        matrix, bars = figure.subplots(1, 2, width_ratios=(4.0, 1.3), sharey=True)
         _cells(matrix, names, gaps)
         _conditions(bars, structures)
         figure.legend(
             handles=_legend(gaps.values()),
             loc="outside lower left",
-            ncols=3,
+            ncols=2,
             handlelength=1.1,
             columnspacing=1.4,
         )
@@ -148,7 +148,7 @@ def _conditions(axes: Axes, structures: Sequence[Mapping[str, Any]]) -> None:
     axes.tick_params(axis="y", length=0, labelleft=False)
     axes.grid(visible=False, axis="y")
     axes.spines["left"].set_visible(False)
-    axes.set_xlabel("Condition number (–)")
+    axes.set_xlabel("Condition number")
     axes.set_title("Conditioning")
 
 
