@@ -59,7 +59,7 @@ def _checked(path: Path, content: bytes) -> Term:
     term = getattr(module, "TERM", None)
     where = str(path)
     if not isinstance(term, Term):
-        found = "nothing" if term is None else f"a {type(term).__name__}"
+        found = "nothing" if term is None else type(term).__name__
         raise InputError("TERM", expected="a models.terms.Term", found=found, where=where)
     check_fields(term, where=where)
     for parameter in term.parameters:
