@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp
 
-from discover.naming.candidates import Part, Variant, scales_of, variants
+from discover.naming.candidates import Variant, scales_of, variants
 from discover.naming.fit import ModelFit, whole_model
 from discover.naming.forces import Trial
 from discover.naming.rows import RecordRows
@@ -98,13 +98,14 @@ def candidate_columns(
             trial.added(t, s, p.probe) for t, s, p in zip(terms, shapes, parts, strict=True)
         ]
         block = np.empty((len(parts), r.target.size))
-        over = np.array([trial.on_cycle(t, s) for t, s in zip(terms, shapes, strict=True)])
-        if r.cycle_rows is not None and over.any():
-            block[over] = np.stack([f for f, c in zip(forces, over, strict=True) if c]) @ (
-                r.cycle_rows
-            )
-        if not over.all():
-            block[~over] = r.project(np.stack([f for f, c in zip(forces, over, strict=True) if not c]))
+        over = np.array(
+            [trial.on_cycle(t, s) for t, s in zip(terms, shapes, strict=True)], dtype=np.bool_
+        )
+        on_cycle, at_samples = np.flatnonzero(over), np.flatnonzero(~over)
+        if r.cycle_rows is not None and on_cycle.size:
+            block[over] = np.stack([forces[i] for i in on_cycle]) @ r.cycle_rows
+        if at_samples.size:
+            block[~over] = r.project(np.stack([forces[i] for i in at_samples]))
         blocks.append(block)
     return np.concatenate(blocks, axis=1)
 
