@@ -26,8 +26,9 @@ def gap(
         typer.Option(
             "--model",
             metavar="M",
-            help="A model.json, ioim-laminar, ioim-turbulent, foim or sfoim (from the device),"
-            " or fit:TERM,TERM,… (coefficients fitted first).",
+            help="A model.json, ioim-laminar, ioim-turbulent, foim or sfoim (from the device;"
+            " b0 and order are fitted first where the paper has none), or fit:TERM,TERM,…"
+            " (coefficients fitted first).",
         ),
     ],
     fixed: Annotated[
@@ -61,14 +62,14 @@ def gap(
     folder = result_folder("gap", campaign, out)
 
     # Loaded here: --help and complaints about options need no numerics.
-    from discover.cli.named_model import named_model
+    from discover.cli.baseline_notes import baseline_notes
+    from discover.cli.named_model import named_model, paper_values
     from discover.cli.own_effects import asked_effects
-    from discover.gap import close_gap, term_ids
+    from discover.gap import FRACTIONAL, close_gap, term_ids
     from discover.motion_gap import motion_before_and_after, require_system
     from discover.readers import read_campaign
     from discover.report.document import json_text
     from discover.report.gap import gap_figures, gap_lines, gap_report
-    from models.constitutive import ForceModel
     from models.terms import TERMS, own_terms
 
     with working("Reading effects"):
@@ -82,18 +83,23 @@ def gap(
         measured = read_campaign(campaign)
     if on == "motion":
         require_system(measured)
-    chosen = model if model.startswith(_FIT) else named_model(model, measured.device)
+    # The paper's b0 and order serve its own devices; for others they are fitted first.
+    device = measured.device
+    first = model in FRACTIONAL and device is not None and not paper_values(model, device)
+    chosen = model if first or model.startswith(_FIT) else named_model(model, device)
     with working(f"Comparing {len(measured.records)} records"):
         found = close_gap(measured, chosen, fixed=fixed, effects=named, seed=seed, jobs=jobs)
     document = found.to_dict()
+    document["findings"] += baseline_notes(
+        model, found.given, device, fixed=fixed, fitted=found.fitted
+    )
     if own:
         document["own_effects"] = [
             {"id": t.id, **t.source.to_dict()} for t in own if t.source is not None
         ]
     if on == "motion":
         with working("Moving the carried system"):
-            before = ForceModel(found.baseline, "baseline")
-            document["motion"] = motion_before_and_after(measured, before, found.model)
+            document["motion"] = motion_before_and_after(measured, found.given, found.model)
     with working("Drawing"):
         figures = gap_figures(document, found.figure_data)
         invocation: Invocation = context.obj

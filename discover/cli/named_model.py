@@ -52,10 +52,13 @@ def named_model(name: str, device: Device | None, *, where: str = "--model") -> 
         return _from_file(name, where=where)
     if device is None:
         raise InputError(name, expected="used with a device", found="none", where=where)
-    if name == "ioim-laminar":
-        return _everywhere(ioim_laminar(device), device)
-    if name == "ioim-turbulent":
-        return _everywhere(ioim_turbulent(device), device)
+    if name.startswith("ioim"):
+        make = ioim_laminar if name == "ioim-laminar" else ioim_turbulent
+        if device.coulomb_friction is not None:
+            return _everywhere(make(device), device)
+        frictionless = make(device, friction=0.0)
+        terms = tuple(t for t in frictionless.terms if t.id != "coulomb-friction")
+        return _everywhere(ForceModel(terms, frictionless.name), device)
     known = _ABOVE if name == "foim" else _BELOW
     if device.name not in known:
         raise InputError(
@@ -68,6 +71,36 @@ def named_model(name: str, device: Device | None, *, where: str = "--model") -> 
     if name == "foim":
         return _everywhere(foim(device, *above), device)
     return sfoim(device, _BELOW[device.name], above)
+
+
+def paper_values(name: str, device: Device | None) -> bool:
+    """Tell whether the paper has b0 and order of a fractional model for a device.
+
+    Examples
+    --------
+    >>> paper_values("sfoim", Device.preset("device-10"))
+    False
+    """
+    known = {"foim": _ABOVE, "sfoim": _BELOW}.get(name, {})
+    return device is not None and device.name in known
+
+
+def left_out(name: str, device: Device | None) -> tuple[str, ...]:
+    """Return in words what a model by name lacks, for want of a value of the device.
+
+    Examples
+    --------
+    >>> left_out("ioim-laminar", Device.preset("device-12"))
+    ()
+    """
+    if device is None or name not in ("ioim-laminar", "ioim-turbulent"):
+        return ()
+    notes = []
+    if device.coulomb_friction is None:
+        notes.append(f"{name} is without Coulomb friction: the device has no coulomb_friction.")
+    if name == "ioim-turbulent" and device.piston_clearance is None:
+        notes.append(f"{name} is without its film term: the device has no piston_clearance.")
+    return tuple(notes)
 
 
 def _everywhere(model: ForceModel, device: Device) -> SegmentedModel:

@@ -1,10 +1,12 @@
 """The missing effect: where model and measurement disagree, its name, the mended model."""
 
 from discover.gap.baseline import Baseline, prepare_baseline, term_ids
+from discover.gap.fractional import FRACTIONAL
 from discover.gap.result import Gap, NamedEffect, RecordGap
 from discover.gap.run import close_gap
 
 __all__ = [
+    "FRACTIONAL",
     "Baseline",
     "Gap",
     "NamedEffect",

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from discover.gap.fractional import FOIM_TERMS, FRACTIONAL, fitted_sfoim
 from discover.motion_fit import Observation
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.rows import RecordRows, record_rows
 from models.checks import InputError
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
+from models.device import Device
 from models.flow import dean_per_speed
 from models.terms import find_term
 
@@ -45,7 +47,7 @@ class Baseline:
 
 
 def term_ids(text: str, *, where: str = "--model") -> tuple[str, ...]:
-    """Return the ids of ``fit:TERM,TERM,...``.
+    """Return the ids of ``fit:TERM,TERM,...``, or of ``foim`` and ``sfoim``.
 
     Raises
     ------
@@ -57,6 +59,8 @@ def term_ids(text: str, *, where: str = "--model") -> tuple[str, ...]:
     >>> term_ids("fit:inertia,viscous-damping")
     ('inertia', 'viscous-damping')
     """
+    if text in FRACTIONAL:
+        return FOIM_TERMS
     ids = tuple(part.strip() for part in text.removeprefix(FIT).split(",") if part.strip())
     if not ids:
         raise InputError("model", expected="fit:TERM,TERM,...", found=repr(text), where=where)
@@ -104,6 +108,7 @@ def prepare_baseline(
     model: str | ForceModel | SegmentedModel,
     *,
     fixed: bool,
+    device: Device | None = None,
 ) -> Baseline:
     """Return the baseline on its records.
 
@@ -112,16 +117,25 @@ def prepare_baseline(
     observations : sequence of Observation
         Of all records.
     model : str, ForceModel or SegmentedModel
-        ``fit:TERM,...`` is fitted to the records that are not held out; a model is taken as it
-        is, and refitted with each effect unless it has several bands or is held.
+        ``fit:TERM,...``, ``foim`` or ``sfoim`` is fitted to the records that are not held out; a
+        model is taken as it is, and refitted with each effect unless it has several bands or is
+        held.
     fixed : bool
         Hold the baseline's coefficients.
+    device : Device, optional
+        Where ``sfoim`` parts its bands.
 
     Raises
     ------
     InputError
         For terms that are not in the vocabulary.
     """
+    fitted_first = model == "sfoim"
+    if model == "sfoim":
+        model = fitted_sfoim(
+            observations, device, along=_coordinate,
+            fit=lambda rows: fit_terms(rows, FOIM_TERMS).model,
+        )  # fmt: skip
     if isinstance(model, str):
         rows = [record_rows(o) for o in observations]
         fitted = fit_terms([r for r in rows if not r.observation.held_out], term_ids(model)).model
@@ -137,7 +151,7 @@ def prepare_baseline(
         free = ForceModel(()) if fixed else model
         return Baseline(tuple(rows), free, model, fitted=False, fixed=fixed)
     rows = [record_rows(o, held=model.at(_coordinate(o, model)).terms) for o in observations]
-    return Baseline(tuple(rows), ForceModel(()), model, fitted=False, fixed=True)
+    return Baseline(tuple(rows), ForceModel(()), model, fitted=fitted_first, fixed=True)
 
 
 def _coordinate(observation: Observation, model: SegmentedModel) -> float:

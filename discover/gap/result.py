@@ -9,7 +9,7 @@ from discover.figure_data import GapFigureData
 from discover.gap.where import Place
 from discover.header import document_header
 from discover.records import Finding
-from models.constitutive import FittedTerm, SegmentedModel
+from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 
 Interval = tuple[float, float]
 
@@ -132,6 +132,8 @@ class Gap:
     """True where no record is marked: each was left out in turn."""
     findings: tuple[Finding, ...]
     """What to know."""
+    given: SegmentedModel | ForceModel
+    """The baseline as it was given, or fitted first."""
     model: SegmentedModel
     """The mended model."""
     figure_data: GapFigureData
@@ -144,7 +146,7 @@ class Gap:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document ``gap.json``."""
-        result = {
+        result: dict[str, Any] = {
             **self._header("gap"),
             "baseline": {
                 "terms": [t.to_dict() for t in self.baseline],
@@ -166,6 +168,9 @@ class Gap:
             "contest": [{"effect": e, "probability": p} for e, p in self.last],
             "findings": [f.to_dict() for f in self.findings],
         }
+        if isinstance(self.given, SegmentedModel) and len(self.given.bands) > 1:
+            result["baseline"]["convention"] = self.given.convention
+            result["baseline"]["bands"] = self.given.to_dict()["bands"]
         if self.shape:
             result["shape"] = self.shape
         return result

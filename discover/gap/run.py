@@ -47,7 +47,7 @@ def close_gap(
         Records; those held out are only predicted. Where none is marked, each is left out in
         turn.
     model : str, ForceModel or SegmentedModel
-        ``fit:TERM,TERM,...`` (coefficients fitted first) or a model.
+        ``fit:TERM,TERM,...``, ``foim``, ``sfoim`` (coefficients fitted first) or a model.
     fixed : bool
         Hold the model's coefficients instead of refitting them with each effect.
     effects : sequence of str, optional
@@ -78,7 +78,7 @@ def close_gap(
     for name in chosen:
         one_of("effect", name, known, where="effects")
     observations = _observe(campaign, jobs)
-    baseline = prepare_baseline(observations, model, fixed=fixed)
+    baseline = prepare_baseline(observations, model, fixed=fixed, device=campaign.device)
     found = search(baseline, chosen)
     return _answer(campaign, baseline, found, seed)
 
@@ -142,6 +142,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         last=_stated(found.last, ""),
         leave_one_out=not campaign.held_out,
         findings=_findings(baseline, found, where_in_words(located)),
+        given=baseline.whole,
         model=_mended(campaign, baseline, found),
         figure_data=_figures(baseline, found, rounds),
     )
