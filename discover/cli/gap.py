@@ -64,7 +64,7 @@ def gap(
     # Loaded here: --help and complaints about options need no numerics.
     from discover.cli.baseline_notes import baseline_notes
     from discover.cli.named_model import named_model, paper_values
-    from discover.cli.own_effects import asked_effects
+    from discover.cli.own_effects import asked_effects, listed_effects, own_notes
     from discover.gap import FRACTIONAL, close_gap, term_ids
     from discover.motion_gap import motion_before_and_after, require_system
     from discover.readers import read_campaign
@@ -94,9 +94,8 @@ def gap(
         model, found.given, device, fixed=fixed, fitted=found.fitted
     )
     if own:
-        document["own_effects"] = [
-            {"id": t.id, **t.source.to_dict()} for t in own if t.source is not None
-        ]
+        document["own_effects"] = listed_effects(own)
+        document["findings"] += own_notes(document["own_effects"])
     if on == "motion":
         with working("Moving the carried system"):
             document["motion"] = motion_before_and_after(measured, found.given, found.model)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -48,3 +48,25 @@ def asked_effects(
         return None, own
     ids = (*(name for name in only if not name.endswith(_FILE)), *(term.id for term in own))
     return tuple(dict.fromkeys(ids)), own
+
+
+def listed_effects(own: Sequence[Term]) -> list[dict[str, str]]:
+    """Return id, file and hash of a user's terms, as ``gap.json`` holds them."""
+    return [{"id": t.id, **t.source.to_dict()} for t in own if t.source is not None]
+
+
+def own_notes(listed: Sequence[Mapping[str, str]]) -> list[dict[str, str]]:
+    """Return findings that say where effects come from.
+
+    Examples
+    --------
+    >>> own_notes([{"id": "drag", "file": "drag.py", "sha256": "ab" * 32}])[0]["text"]
+    'The effect drag is your own: drag.py, sha256 abababababab….'
+    """
+    return [
+        {
+            "level": "note",
+            "text": f"The effect {e['id']} is your own: {e['file']}, sha256 {e['sha256'][:12]}….",
+        }
+        for e in listed
+    ]

@@ -148,6 +148,17 @@ def test_the_shapes_that_a_file_names_are_those_that_are_tried(tmp_path, file):
     assert found.rounds[0].parameters["pitch"] == pytest.approx(PITCH, rel=0.01)
 
 
+def test_two_own_effects_are_told_apart(tmp_path, file):
+    other = tmp_path / "swirl.py"
+    other.write_text(EVEN)
+    with own_terms(load_term(file), load_term(other)):
+        found = discover.close_gap(
+            campaign(lambda t, x, v, a: detent(t, x, v, a) + 3e5 * x * v**2), BASE
+        )
+    assert {r.effect for r in found.rounds} == {"magnetic-detent", "swirl"}
+    assert found.verdict == "closed"
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -168,7 +179,9 @@ def test_the_command_names_it_and_stores_its_hash(file, folder, here, capsys, ar
     assert document["own_effects"] == [{"id": "magnetic-detent", **source}]
     stored = json.loads((here / "out" / "model.json").read_text())
     assert stored["bands"][0]["terms"][-1]["source"] == source
-    assert "magnetic detent" in (here / "out" / "report.html").read_text()
+    page = (here / "out" / "report.html").read_text()
+    assert "magnetic detent" in page
+    assert f"magnetic_detent.py, sha256 {source['sha256'][:12]}" in page
     assert (here / "out" / "figures" / "shape-1.svg").stat().st_size > 1000
     assert "magnetic-detent" not in TERMS
 
