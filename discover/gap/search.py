@@ -5,30 +5,28 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from discover.gap.accuracy import Misfit, misfit
 from discover.gap.baseline import Baseline
 from discover.naming.contest import AGREES, UNKNOWN, Contest, run_contest
 from discover.naming.fit import (
     ModelFit,
+    UnitRows,
     fit_model,
     free_parameters,
-    inverse,
-    value_of,
     whole_model,
-    with_values,
 )
 from discover.naming.forces import model_force
 from discover.naming.refine import extended, refine
 from discover.naming.rows import RecordRows
-from models.checks import Array
 from models.constitutive import ForceModel
 
 MOST_ROUNDS = 6
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _NEGLIGIBLE = 0.002  # of the misfit before the first round, likewise
+_FOLDS = 16
+_LEFT_OUT_STEPS = 5
+_LEFT_OUT_ENOUGH = 0.01
 _FEWEST = 20.0  # of chi-square, likewise
 
 
@@ -89,24 +87,26 @@ def _misfit(rows: RecordRows, model: ForceModel) -> Misfit:
 
 
 def _left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
-    """Return each record's misfit by the model fitted to the others, to first order."""
+    """Return each record's misfit by the model fitted to the others.
+
+    Of more than sixteen records several are left out at once.
+    """
     if len(rows) < 2:
         return ()
     if not fit.parameters:
         return tuple(_misfit(r, fit.model) for r in rows)
-    values = np.array([value_of(fit.model, p) for p in fit.parameters])
-    result, start = [], 0
-    for r in rows:
-        span = slice(start, start + r.target.size)
-        start = span.stop
-        own = fit.tangents[:, span]
-        rest = inverse(fit.tangents @ fit.tangents.T - own @ own.T)
-        shift: Array = -rest @ (own @ fit.residual[span])
-        limit = 0.5 * np.abs(values)
-        shape = np.array([p.shape is not None for p in fit.parameters])
-        shift = np.where(shape, np.clip(shift, -limit, limit), shift)
-        result.append(_misfit(r, with_values(fit.model, fit.parameters, values + shift)))
-    return tuple(result)
+    units = UnitRows()
+    found: dict[int, Misfit] = {}
+    folds = min(len(rows), _FOLDS)
+    for fold in range(folds):
+        rest = [r for i, r in enumerate(rows) if i % folds != fold]
+        refit = fit_model(
+            rest, fit.model, fit.parameters, iterations=_LEFT_OUT_STEPS, enough=_LEFT_OUT_ENOUGH,
+            units=units,
+        )
+        for i in range(fold, len(rows), folds):
+            found[i] = _misfit(rows[i], refit.model)
+    return tuple(found[i] for i in range(len(rows)))
 
 
 def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUNDS) -> Search:
@@ -137,7 +137,7 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         name = contest.ranked[0][0]
         if name in (AGREES, UNKNOWN) or len(rounds) >= most:
             return Search(start, tuple(rounds), contest)
-        mended = fits.get(name) or _mended(fitted, fit, contest, name)
+        mended = _mended(fitted, fit, contest, name, fits.get(name))
         gained = fit.chi2 - mended.chi2
         at_first = max(at_first, contest.excess)
         if gained < max(_TOO_LITTLE * contest.excess, _NEGLIGIBLE * at_first, _FEWEST):
@@ -167,10 +167,15 @@ def _contest(
 
 
 def _mended(
-    rows: Sequence[RecordRows], fit: ModelFit, contest: Contest, name: str
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    contest: Contest,
+    name: str,
+    begun: ModelFit | None,
 ) -> ModelFit:
+    """Return the fit with an effect added, from where the contest's own refinement stopped."""
     entry = next(e for e in contest.entries if e.effects and e.effects[0] == name)
-    model = extended(fit.model, entry)
+    model = extended(fit.model, entry) if begun is None else begun.model
     return fit_model(rows, model, free_parameters(model))
 
 

@@ -1,4 +1,8 @@
-"""Fitting a model to whitened rows: coefficients and shapes by Gauss-Newton with step control."""
+"""Fitting a model to whitened rows.
+
+Coefficients of added forces are solved for exactly at each shape (variable projection); shapes,
+and whatever acts through a change of input or output, by Levenberg-Marquardt.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.naming.forces import model_force
+from discover.naming.forces import DELAY, Trial, change_on_cycle, model_force
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "heating")
-_ITERATIONS = 12
-_SMALL = 1e-5
+_ITERATIONS = 40
+_TRIES = 6
+_DAMPING = 1e-4
+_LEAST_DAMPING = 1e-10
+_SMALL = 1e-4
 
 
 @dataclass(frozen=True)
@@ -87,38 +94,79 @@ def whole_model(rows: RecordRows, model: ForceModel) -> ForceModel:
     return ForceModel((*rows.held, *model.terms), model.name) if rows.held else model
 
 
-def rows_of_model(rows: Sequence[RecordRows], model: ForceModel) -> Array:
-    """Return the whitened rows of a model's force, all records after each other."""
-    parts = [r.project(model_force(r.observation, whole_model(r, model))) for r in rows]
-    return np.concatenate(parts)
+class UnitRows:
+    """Whitened rows of terms with coefficient one: each shape is evaluated once."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[int, str, tuple[tuple[str, float], ...]], Array] = {}
+        self._rows: dict[int, RecordRows] = {}
+
+    def of(self, r: RecordRows, fitted: FittedTerm) -> Array:
+        """Return the rows (R,) of a term that adds a force, in one record."""
+        key = (id(r), fitted.id, tuple(fitted.shape.items()))
+        self._rows[id(r)] = r  # kept, so that no other record gets its id
+        if key not in self._known:
+            trial = Trial(r.observation, ForceModel(()))
+            force = trial.added(fitted.term, fitted.shape, 1.0)
+            if r.cycle_rows is not None and trial.on_cycle(fitted.term, fitted.shape):
+                self._known[key] = np.asarray(force @ r.cycle_rows)
+            else:
+                self._known[key] = r.project(force)
+        return self._known[key]
+
+    def of_all(self, rows: Sequence[RecordRows], fitted: FittedTerm) -> Array:
+        """Return the rows of several records after each other."""
+        return np.concatenate([self.of(r, fitted) for r in rows])
+
+    def of_model(self, rows: Sequence[RecordRows], model: ForceModel) -> Array:
+        """Return the rows of a model's force, with the terms that each record holds."""
+        return np.concatenate([self._of_record(r, model) for r in rows])
+
+    def _of_record(self, r: RecordRows, model: ForceModel) -> Array:
+        whole = whole_model(r, model)
+        changes = [t for t in whole.terms if t.term.acts != "force"]
+        if any(t.id == DELAY for t in changes) or (changes and r.cycle_rows is None):
+            return r.project(model_force(r.observation, whole))
+        result = np.zeros(r.target.size)
+        for t in whole.terms:
+            if t.term.acts == "force":
+                result += t.coefficient * self.of(r, t)
+        if changes and r.cycle_rows is not None:
+            result += change_on_cycle(r.observation, whole) @ r.cycle_rows
+        return result
 
 
-def _rows_of_terms(rows: Sequence[RecordRows], *terms: FittedTerm) -> Array:
-    alone = ForceModel(terms)
-    return np.concatenate([r.project(model_force(r.observation, alone)) for r in rows])
+def _transforms(rows: Sequence[RecordRows], model: ForceModel) -> bool:
+    return any(t.term.acts != "force" for r in rows for t in (*r.held, *model.terms))
 
 
 def _tangents(
-    rows: Sequence[RecordRows], model: ForceModel, parameters: Sequence[Parameter], at: Array
+    rows: Sequence[RecordRows],
+    units: UnitRows,
+    model: ForceModel,
+    parameters: Sequence[Parameter],
+    at: Array,
+    *,
+    linear: bool,
 ) -> Array:
-    transforms = any(t.term.acts != "force" for r in rows for t in (*r.held, *model.terms))
+    """Return the change (P, R) of the rows with each parameter; `linear`: forces only add."""
     result = np.empty((len(parameters), at.size))
     for index, parameter in enumerate(parameters):
         fitted = model.terms[parameter.term]
         value = value_of(model, parameter)
-        if parameter.shape is None and not transforms:
-            result[index] = _rows_of_terms(rows, FittedTerm(fitted.id, 1.0, fitted.shape))
+        if parameter.shape is None and linear:
+            result[index] = units.of_all(rows, fitted)
             continue
         step = 1e-4 * abs(value) or 1e-6
         if parameter.shape in ("order", "exponent"):
             step = -step  # stays below the upper bound
-        if parameter.shape is not None and not transforms:
-            there = {**fitted.shape, parameter.shape: value + step}
-            moved = FittedTerm(fitted.id, fitted.coefficient, there)
-            result[index] = (_rows_of_terms(rows, moved) - _rows_of_terms(rows, fitted)) / step
-            continue
         other = with_values(model, [parameter], np.array([value + step]))
-        result[index] = (rows_of_model(rows, other) - at) / step
+        if linear:
+            moved = other.terms[parameter.term]
+            change = fitted.coefficient * (units.of_all(rows, moved) - units.of_all(rows, fitted))
+        else:
+            change = units.of_model(rows, other) - at
+        result[index] = change / step
     return result
 
 
@@ -153,8 +201,9 @@ def fit_model(
     *,
     iterations: int = _ITERATIONS,
     enough: float = _SMALL,
+    units: UnitRows | None = None,
 ) -> ModelFit:
-    """Return the model with `parameters` fitted by Gauss-Newton, started from its own values.
+    """Return the model with `parameters` fitted, started from its own values.
 
     Parameters
     ----------
@@ -168,28 +217,65 @@ def fit_model(
         At most.
     enough : float
         Relative gain of chi-square below which to stop.
+    units : UnitRows, optional
+        Rows that are known already, where several fits share records.
     """
     target = np.concatenate([r.target for r in rows])
-    at = rows_of_model(rows, model)
+    units = UnitRows() if units is None else units
+    linear = not _transforms(rows, model)
+    if linear:
+        model = _solved(rows, units, model, parameters, target)
+    at = units.of_model(rows, model)
     chi2 = float(np.sum((target - at) ** 2))
-    tangents = _tangents(rows, model, parameters, at)
-    for _ in range(iterations if parameters else 0):
+    tangents = _tangents(rows, units, model, parameters, at, linear=linear)
+    settled = linear and all(p.shape is None for p in parameters)
+    damping, idle = _DAMPING, 0
+    for _ in range(0 if settled else iterations):
         scale = np.linalg.norm(tangents, axis=1)
         safe = np.where(scale > 0.0, scale, 1.0)
-        step, *_ = np.linalg.lstsq((tangents / safe[:, None]).T, target - at, rcond=1e-9)
+        unit = tangents / safe[:, None]
+        gram, slope = unit @ unit.T, unit @ (target - at)
         old = np.array([value_of(model, p) for p in parameters])
-        gained = False
-        for share in (1.0, 0.4, 0.1, 0.02):
-            values = _bounded(model, parameters, old + share * step / safe)
-            trial = with_values(model, parameters, values)
-            rows_now = rows_of_model(rows, trial)
+        before = chi2
+        for _ in range(_TRIES):
+            step = np.linalg.lstsq(
+                gram + damping * np.eye(len(parameters)), slope, rcond=1e-12
+            )[0]
+            trial = with_values(model, parameters, _bounded(model, parameters, old + step / safe))
+            if linear:
+                trial = _solved(rows, units, trial, parameters, target)
+            rows_now = units.of_model(rows, trial)
             now = float(np.sum((target - rows_now) ** 2))
             if now < chi2:
-                gained = chi2 - now > enough * max(chi2, 1.0)
                 model, at, chi2 = trial, rows_now, now
+                damping = max(damping / 10.0, _LEAST_DAMPING)
                 break
-        if not gained:
+            damping = max(10.0 * damping, _DAMPING)
+        if chi2 == before:
             break
-        tangents = _tangents(rows, model, parameters, at)
+        tangents = _tangents(rows, units, model, parameters, at, linear=linear)
+        idle = idle + 1 if before - chi2 <= enough * max(chi2, 1.0) else 0
+        if idle == 2:
+            break
     covariance = inverse(tangents @ tangents.T)
     return ModelFit(model, chi2, target - at, tangents, tuple(parameters), covariance)
+
+
+def _solved(
+    rows: Sequence[RecordRows],
+    units: UnitRows,
+    model: ForceModel,
+    parameters: Sequence[Parameter],
+    target: Array,
+) -> ForceModel:
+    """Return the model with its free coefficients at their least-squares values."""
+    free = [p for p in parameters if p.shape is None]
+    if not free:
+        return model
+    columns = np.stack([units.of_all(rows, model.terms[p.term]) for p in free])
+    held = with_values(model, free, np.zeros(len(free)))
+    rest = target - units.of_model(rows, held)
+    size = np.linalg.norm(columns, axis=1)
+    size[size == 0.0] = 1.0
+    solution = np.linalg.lstsq((columns / size[:, None]).T, rest, rcond=1e-10)[0]
+    return with_values(model, free, solution / size)

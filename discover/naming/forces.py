@@ -51,6 +51,16 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
     return plain.force(motion) + _from_cycle(observation, change)
 
 
+def change_on_cycle(observation: Observation, model: ForceModel) -> Array:
+    """Return what changes of input and output do to a model's force over one cycle, (G,) N."""
+    cycle = observation.cycle
+    if cycle is None:
+        raise ValueError("only a sine test has a cycle")
+    steady = ForceModel(tuple(t for t in model.terms if not _changes(t)))
+    added = ForceModel(tuple(t for t in steady.terms if t.term.acts == "force"))
+    return steady.force(cycle) - added.force(cycle)
+
+
 def _changes(fitted: FittedTerm) -> bool:
     return fitted.term.follows == "time"
 

@@ -11,7 +11,7 @@ from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 
 _LEADING = 6
-_ITERATIONS = 6
+_ITERATIONS = 8
 _ENOUGH = 0.02
 _WITHIN = 60.0  # nats behind the best, within which a candidate is refined
 
