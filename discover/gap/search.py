@@ -23,7 +23,7 @@ from models.constitutive import ForceModel
 MOST_ROUNDS = 6
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
-_NEGLIGIBLE = 0.002  # of the misfit before the first round, likewise
+_SHAPE_DOUBT = 0.045  # of an effect's amplitude: no formula follows a measured shape closer
 _FOLDS = 16
 _LEFT_OUT_STEPS = 5
 _LEFT_OUT_ENOUGH = 0.01
@@ -129,19 +129,19 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     names: list[tuple[str, int]] = []
     rounds: list[Round] = []
     tried: set[str] = set()
-    at_first = 0.0
+    explained = 0.0
     while True:
         present = {t.id for t in fit.model.terms}
         open_effects = [e for e in effects if e not in present and e not in tried]
-        contest, fits = _contest(fitted, fit, open_effects)
+        contest, fits = _contest(fitted, fit, open_effects, _SHAPE_DOUBT**2 * explained)
         name = contest.ranked[0][0]
         if name in (AGREES, UNKNOWN) or len(rounds) >= most:
             return Search(start, tuple(rounds), contest)
         mended = _mended(fitted, fit, contest, name, fits.get(name))
         gained = fit.chi2 - mended.chi2
-        at_first = max(at_first, contest.excess)
-        if gained < max(_TOO_LITTLE * contest.excess, _NEGLIGIBLE * at_first, _FEWEST):
+        if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
             return Search(start, tuple(rounds), contest)
+        explained += gained
         first = len(fit.model.terms)
         mended, dropped, names = _without_superfluous(fitted, mended, names)
         first -= len(dropped)
@@ -152,7 +152,7 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
 
 
 def _contest(
-    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str]
+    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str], tolerated: float
 ) -> tuple[Contest, dict[str, ModelFit]]:
     reversal = next(
         (
@@ -162,7 +162,7 @@ def _contest(
         ),
         0.0,
     )
-    contest = run_contest(rows, fit, effects, reversal=reversal)
+    contest = run_contest(rows, fit, effects, reversal=reversal, tolerated=tolerated)
     return refine(rows, fit, contest, effects)
 
 

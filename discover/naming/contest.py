@@ -16,7 +16,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.naming.candidates import Variant, scales_of, variants
-from discover.naming.fit import ModelFit, whole_model
+from discover.naming.fit import ModelFit, kind_of, whole_model
 from discover.naming.forces import Trial
 from discover.naming.rows import RecordRows
 from models.checks import Array
@@ -36,6 +36,7 @@ _UNKNOWN_SHARE = 0.6
 _UNKNOWN_COST = 6.0
 _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
+_UNEVEN = 5
 _REVERSALS = (0.4, 2.5)
 _NEEDS = {"stribeck-friction": "coulomb-friction"}  # a fall needs a friction to fall to
 
@@ -69,7 +70,9 @@ class Contest:
     rows: int
     """Number of rows."""
     noise: float
-    """Chi-square that noise explains."""
+    """Chi-square that noise explains, and the shapes of effects that were added before."""
+    starts: Mapping[str, tuple[Entry, ...]]
+    """Of every effect the best of each kind of its shapes, to start a fit from."""
 
     @property
     def ranked(self) -> list[tuple[str, float]]:
@@ -148,7 +151,7 @@ def run_contest(
     effects: Sequence[str],
     *,
     reversal: float = 0.0,
-    user: Sequence[Variant] = (),
+    tolerated: float = 0.0,
 ) -> Contest:
     """Weigh every effect beside a fitted model.
 
@@ -162,17 +165,18 @@ def run_contest(
         Ids to weigh.
     reversal : float
         m/s over which the model's friction reverses.
-    user : sequence of Variant
-        Further variants.
+    tolerated : float
+        Chi-square by which the shapes of effects that were added before may be wrong.
     """
     scales = scales_of([r.observation for r in rows], reversal)
     terms = {t.id for r in rows[:1] for t in (*r.held, *fit.model.terms)}
     possible = [e for e in effects if _NEEDS.get(e, e) in terms or e not in _NEEDS]
-    chosen = [v for e in possible for v in variants(e, scales)] + list(user)
+    chosen = [v for e in possible for v in variants(e, scales)]
     informative = sum(r.informative for r in rows)
     size = fit.residual.size
     dof = size - len(fit.parameters)
     noise = dof + _NOISE_DEVIATIONS * np.sqrt(2.0 * dof) * 0.5 + _NOISE_UNCERTAINTY * dof
+    noise += tolerated
     raw = candidate_columns(rows, fit.model, chosen)
     tangents = np.concatenate([fit.tangents, _reversal_doubt(rows, fit.model)])
     freed = _freed(raw, tangents)
@@ -193,10 +197,8 @@ def run_contest(
         entry = _single(v, raw[span], freed[span], target, chi2, evidence)
         if entry is not None:
             entries.append(entry)
-    best: dict[str, Entry] = {}
-    for e in entries[1:]:
-        if e.effects[0] not in best or e.log_evidence > best[e.effects[0]].log_evidence:
-            best[e.effects[0]] = e
+    starts = _starts(entries[1:])
+    best = {name: some[0] for name, some in starts.items()}
     ranked = sorted(best.values(), key=lambda e: -e.log_evidence)
     pairs: list[Entry] = []
     if ranked and ranked[0].chi2 > noise + 20.0:
@@ -205,7 +207,23 @@ def run_contest(
             pairs += _pairs(lead, best, chosen, spans, freed, start, evidence, informative)
     everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
     probabilities = _probabilities(everything, effects, chi2 - noise, informative)
-    return Contest(tuple(everything), probabilities, chi2 - noise, size, noise)
+    return Contest(tuple(everything), probabilities, chi2 - noise, size, noise, starts)
+
+
+def _starts(singles: Sequence[Entry]) -> dict[str, tuple[Entry, ...]]:
+    """Return of every effect the best entry of each kind of shape, best first.
+
+    Shapes are of one kind where the same parameters are free and the others are equal. A change
+    of input or output depends on its shape unevenly: the next best few stand beside the best.
+    """
+    found: dict[str, dict[tuple[object, ...], Entry]] = {}
+    for e in sorted(singles, key=lambda e: -e.log_evidence):
+        kinds: tuple[object, ...] = tuple((p.id, kind_of(p.shape)) for p in e.variants[0].parts)
+        known = found.setdefault(e.effects[0], {})
+        if TERMS[e.effects[0]].acts != "force" and len(known) < _UNEVEN:
+            kinds = (*kinds, len(known))
+        known.setdefault(kinds, e)
+    return {name: tuple(kinds.values()) for name, kinds in found.items()}
 
 
 def _single(

@@ -6,7 +6,7 @@ and whatever acts through a change of input or output, by Levenberg-Marquardt.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,8 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "heating")
+_STEP = 1e-4  # of a value, for its tangent
+_JOINT_STEP = 5e-3  # likewise behind a joint, whose simulated cycle closes to a few thousandths
 _ITERATIONS = 40
 _TRIES = 6
 _DAMPING = 1e-4
@@ -52,6 +54,18 @@ class ModelFit:
     """(P, P) of the parameters."""
 
 
+def _moves(name: str, value: float) -> bool:
+    """Tell whether a shape parameter is fitted: zero stands for a limit and stays."""
+    return name not in _FIXED_SHAPES and value != 0.0
+
+
+def kind_of(shape: Mapping[str, float]) -> tuple[tuple[str, float | None], ...]:
+    """Return what a fit does not change in a shape: its choices, and what is at its limit."""
+    return tuple(
+        (name, None if _moves(name, value) else value) for name, value in sorted(shape.items())
+    )
+
+
 def free_parameters(model: ForceModel) -> tuple[Parameter, ...]:
     """Return the parameters of all terms.
 
@@ -63,7 +77,7 @@ def free_parameters(model: ForceModel) -> tuple[Parameter, ...]:
         found += [
             Parameter(index, name)
             for name, value in fitted.shape.items()
-            if name not in _FIXED_SHAPES and value != 0.0
+            if _moves(name, value)
         ]
     return tuple(found)
 
@@ -148,16 +162,20 @@ def _tangents(
     at: Array,
     *,
     linear: bool,
+    rough: bool = False,
 ) -> Array:
-    """Return the change (P, R) of the rows with each parameter; `linear`: forces only add."""
+    """Return the change (P, R) of the rows with each parameter; `linear`: forces only add.
+
+    `rough` leaves out that a joint passes an added force on changed: enough for a step.
+    """
     result = np.empty((len(parameters), at.size))
     for index, parameter in enumerate(parameters):
         fitted = model.terms[parameter.term]
         value = value_of(model, parameter)
-        if parameter.shape is None and linear:
+        if parameter.shape is None and (linear or (rough and fitted.term.acts == "force")):
             result[index] = units.of_all(rows, fitted)
             continue
-        step = 1e-4 * abs(value) or 1e-6
+        step = (_STEP if linear else _JOINT_STEP) * abs(value) or 1e-6
         if parameter.shape in ("order", "exponent"):
             step = -step  # stays below the upper bound
         other = with_values(model, [parameter], np.array([value + step]))
@@ -227,7 +245,7 @@ def fit_model(
         model = _solved(rows, units, model, parameters, target)
     at = units.of_model(rows, model)
     chi2 = float(np.sum((target - at) ** 2))
-    tangents = _tangents(rows, units, model, parameters, at, linear=linear)
+    tangents = _tangents(rows, units, model, parameters, at, linear=linear, rough=True)
     settled = linear and all(p.shape is None for p in parameters)
     damping, idle = _DAMPING, 0
     for _ in range(0 if settled else iterations):
@@ -253,10 +271,12 @@ def fit_model(
             damping = max(10.0 * damping, _DAMPING)
         if chi2 == before:
             break
-        tangents = _tangents(rows, units, model, parameters, at, linear=linear)
+        tangents = _tangents(rows, units, model, parameters, at, linear=linear, rough=True)
         idle = idle + 1 if before - chi2 <= enough * max(chi2, 1.0) else 0
         if idle == 2:
             break
+    if not linear:
+        tangents = _tangents(rows, units, model, parameters, at, linear=False)
     covariance = inverse(tangents @ tangents.T)
     return ModelFit(model, chi2, target - at, tangents, tuple(parameters), covariance)
 

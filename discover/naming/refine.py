@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from discover.naming.contest import Contest, Entry, reweighed
-from discover.naming.fit import ModelFit, fit_model, free_parameters
+from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 
 _LEADING = 6
+_KINDS = (6, 4, 2, 1)  # of shapes that are fitted, of the first effect, the second, ...
+_FIRST_STEPS = 2
 _ITERATIONS = 8
 _ENOUGH = 0.02
 _WITHIN = 60.0  # nats behind the best, within which a candidate is refined
@@ -55,12 +57,25 @@ def refine(
         return contest, {}
     best = max(e.log_evidence for e in contest.entries)
     leading = [e for e in singles[:_LEADING] if e.log_evidence > best - _WITHIN]
+    units = UnitRows()
     fits: dict[str, ModelFit] = {}
-    for entry in leading:
-        model = extended(fit.model, entry)
-        free = free_parameters(model)
-        found = fit_model(rows, model, free, iterations=_ITERATIONS, enough=_ENOUGH)
-        if TERMS[entry.effects[0]].nonnegative and found.model.terms[-1].coefficient <= 0.0:
+    for place, entry in enumerate(leading):
+        name = entry.effects[0]
+        starts = contest.starts[name][: _KINDS[min(place, len(_KINDS) - 1)]]
+        models = [extended(fit.model, start) for start in starts]
+        if len(models) > 1:
+            begun = [_fit(rows, m, units, _FIRST_STEPS) for m in models]
+            models = [min(begun, key=lambda f: f.chi2).model]
+        found = _fit(rows, models[0], units, _ITERATIONS)
+        if TERMS[name].nonnegative and found.model.terms[-1].coefficient <= 0.0:
             continue
-        fits[entry.effects[0]] = found
+        fits[name] = found
     return reweighed(rows, contest, fits, effects), fits
+
+
+def _fit(
+    rows: Sequence[RecordRows], model: ForceModel, units: UnitRows, steps: int
+) -> ModelFit:
+    return fit_model(
+        rows, model, free_parameters(model), iterations=steps, enough=_ENOUGH, units=units
+    )

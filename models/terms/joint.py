@@ -19,7 +19,7 @@ _SETTLED = 3e-3
 _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle within one
 _MOST_INNER = 60
 _HARDEST = 8.0
-_SLOW = 0.01  # of the greatest speed, over which dry friction reverses in time stepping
+_SLOW = 0.002  # of the greatest speed, over which dry friction reverses in time stepping
 
 
 @dataclass(frozen=True)
@@ -106,6 +106,7 @@ def _step(
     position, speed, slipped = x[0], v[0], 0.0
     stroke, pace_limit = np.max(np.abs(x)), np.max(np.abs(v))
     h = step / inner
+    brake = h * dry / mass
     for turn in range(passes):
         was, was_speed = position - x[0] + slipped, speed
         for i in range(size):
@@ -133,9 +134,11 @@ def _step(
                     slipped += (force - min(max(force, lower), upper)) / stiffness
                 force = min(max(force, lower), upper)
                 total += force
-                resistance = (viscous + quadratic * abs(speed)) * speed
-                resistance += dry * min(max(speed / slow, -1.0), 1.0)
-                speed += h * (force - resistance) / mass
+                speed += h * (force - (viscous + quadratic * abs(speed)) * speed) / mass
+                if abs(speed) > slow + brake:  # friction implicitly: it never overshoots
+                    speed -= brake if speed > 0.0 else -brake
+                else:
+                    speed /= 1.0 + brake / slow
                 position += h * speed
             result[i] = total / inner
         moved = abs(position - x[0] + slipped - was)
