@@ -19,6 +19,7 @@ import numpy as np
 
 from discover.library.dictionary import Dictionary
 from discover.regression.support import ProfiledFit, Support, SupportFit
+from discover.selection.drift import with_zero_drift
 from discover.selection.materiality import relative_triangle
 from discover.triangle import WindowRows
 from models.checks import Array, Indices
@@ -117,6 +118,7 @@ def with_discrepancy(
     list of WindowRows
         With `discrepancy` in N^2 such that a relative error of one is the found one.
     """
+    windows = with_zero_drift(windows, dictionary)
     groups = neighbours(coordinate)
     shares = [_share([windows[i] for i in group], dictionary, supports) for group in groups]
     size = max(s.excess.size for s in shares)

@@ -9,16 +9,27 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.library.dictionary import Dictionary
-from discover.regression.support import ProfiledFit, Support, SupportFit
+from discover.regression.support import (
+    PLAIN_SHAPES,
+    SAME_SHAPE,
+    ProfiledFit,
+    Support,
+    SupportFit,
+)
 from discover.selection.structures import (
     ELASTIC,
+    FRACTIONAL,
     MINOR,
+    NUISANCE,
     POWER,
     STRUCTURES,
     TURBULENT_EXPONENT,
     structure_of,
 )
 from discover.triangle import Triangle
+
+
+_CANCELS = 5.0  # times the force: stiffness and inertia that take each other back
 
 
 @dataclass(frozen=True)
@@ -31,7 +42,7 @@ class Scored:
     """Name of its structure."""
     log_evidence: float
     """By the Bayesian information criterion, without the prior over structures; -inf where
-    a sign is unphysical."""
+    a sign is unphysical or a term has no identity of its own."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +76,22 @@ def penalty(parameters: int, rows: int) -> float:
     return 0.5 * parameters * float(np.log(max(rows, 2)))
 
 
+def stands(fit: SupportFit) -> bool:
+    """Return whether every term of a fit has an identity of its own.
+
+    A free shape beside other terms that lies on a plain term's shape, to within little, stands for
+    that term, and the support that has it is weighed anyway. At a single frequency stiffness is
+    inertia with the other sign: where they take back many times the force, neither is measured.
+    """
+    core = [i for i in fit.support.ids if i not in NUISANCE and i not in ELASTIC]
+    for identifier, shape in zip(fit.support.free, fit.shapes, strict=False):
+        alone = identifier == FRACTIONAL and len(core) == 1
+        if not alone and any(abs(shape - v) < SAME_SHAPE for v in PLAIN_SHAPES[identifier]):
+            return False
+    elastic = [s for i, s in zip(fit.support.ids, fit.shares, strict=True) if i in ELASTIC]
+    return max(elastic, default=0.0) < _CANCELS
+
+
 def score(
     engine: ProfiledFit, supports: Sequence[Support], *, rows: int | None = None
 ) -> list[Scored]:
@@ -75,7 +102,7 @@ def score(
     for support in supports:
         fit = engine.fit(support)
         value = -0.5 * (fit.chi2 + triangle.log_determinant) - penalty(support.parameters, size)
-        result.append(Scored(fit, name_of(fit), value if fit.valid else -np.inf))
+        result.append(Scored(fit, name_of(fit), value if fit.valid and stands(fit) else -np.inf))
     return sorted(result, key=lambda s: -s.log_evidence)
 
 

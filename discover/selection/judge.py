@@ -17,6 +17,7 @@ from discover.regression.support import (
     SupportFit,
 )
 from discover.selection.discrepancy import with_discrepancy
+from discover.selection.drift import with_zero_drift
 from discover.selection.evidence import Contest, contest, name_of
 from discover.selection.materiality import (
     Materiality,
@@ -108,6 +109,7 @@ def judge(
     -------
     Judgement
     """
+    windows = with_zero_drift(windows, dictionary)
     start = list(supports) if keep_all else named_supports(dictionary, ())
     weighed = with_discrepancy(windows, dictionary, coordinate, start)
     result = contest(triangle_of(weighed), dictionary, supports)

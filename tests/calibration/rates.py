@@ -59,7 +59,8 @@ def limits(right: int, asked: int) -> tuple[float, float]:
     return low, high
 
 
-def _row(right: int, asked: int) -> str:
+def rate(right: int, asked: int) -> str:
+    """Return the cells of a rate and its interval."""
     if not asked:
         return "0 / 0 | |"
     low, high = limits(right, asked)
@@ -77,7 +78,7 @@ def reliability(stated: Sequence[tuple[float, bool]]) -> str:
         some = [(p, r) for p, r in stated if low <= p and (p < high or last)]
         mean = f"{np.mean([p for p, _ in some]):.3f}" if some else ""
         lines.append(
-            f"| {low:g} to {high:g} | {_row(sum(r for _, r in some), len(some))} {mean} |"
+            f"| {low:g} to {high:g} | {rate(sum(r for _, r in some), len(some))} {mean} |"
         )
     value, asked = shortfall(stated)
     lines.append(
@@ -102,7 +103,7 @@ def table(found: Sequence[Outcome]) -> str:
         bar = f"{BARS[question]:.2f}"
         if question.startswith("order"):
             bar += f" to {MOST_ORDERS:g}"
-        lines.append(f"| {question} | {_row(right, asked)} {bar} |")
+        lines.append(f"| {question} | {rate(right, asked)} {bar} |")
     told = [o.equivalents for o in found if o.separable]
     widths = [o.width for o in found if o.width is not None]
     if told:
