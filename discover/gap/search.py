@@ -25,7 +25,7 @@ _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _SHAPE_DOUBT = 0.045  # of an effect's amplitude: no formula follows a measured shape closer
 _FOLDS = 16
-_LEFT_OUT_STEPS = 5
+_LEFT_OUT_STEPS = 3
 _LEFT_OUT_ENOUGH = 0.01
 _FEWEST = 20.0  # of chi-square, likewise
 
@@ -102,7 +102,7 @@ def _left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
         rest = [r for i, r in enumerate(rows) if i % folds != fold]
         refit = fit_model(
             rest, fit.model, fit.parameters, iterations=_LEFT_OUT_STEPS, enough=_LEFT_OUT_ENOUGH,
-            units=units,
+            units=units, exact=False,
         )
         for i in range(fold, len(rows), folds):
             found[i] = _misfit(rows[i], refit.model)

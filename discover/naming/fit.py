@@ -220,6 +220,7 @@ def fit_model(
     iterations: int = _ITERATIONS,
     enough: float = _SMALL,
     units: UnitRows | None = None,
+    exact: bool = True,
 ) -> ModelFit:
     """Return the model with `parameters` fitted, started from its own values.
 
@@ -237,6 +238,8 @@ def fit_model(
         Relative gain of chi-square below which to stop.
     units : UnitRows, optional
         Rows that are known already, where several fits share records.
+    exact : bool
+        Whether the fit's tangents hold what a joint does to an added force.
     """
     target = np.concatenate([r.target for r in rows])
     units = UnitRows() if units is None else units
@@ -275,7 +278,7 @@ def fit_model(
         idle = idle + 1 if before - chi2 <= enough * max(chi2, 1.0) else 0
         if idle == 2:
             break
-    if not linear:
+    if exact and not linear:
         tangents = _tangents(rows, units, model, parameters, at, linear=False)
     covariance = inverse(tangents @ tangents.T)
     return ModelFit(model, chi2, target - at, tangents, tuple(parameters), covariance)

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from discover.naming.contest import Contest, Entry, reweighed
 from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters
@@ -58,24 +61,84 @@ def refine(
     best = max(e.log_evidence for e in contest.entries)
     leading = [e for e in singles[:_LEADING] if e.log_evidence > best - _WITHIN]
     units = UnitRows()
+    frozen = _Frozen.of(rows, fit, units)
     fits: dict[str, ModelFit] = {}
     for place, entry in enumerate(leading):
         name = entry.effects[0]
         starts = contest.starts[name][: _KINDS[min(place, len(_KINDS) - 1)]]
         models = [extended(fit.model, start) for start in starts]
         if len(models) > 1:
-            begun = [_fit(rows, m, units, _FIRST_STEPS) for m in models]
+            begun = [_fit(rows, m, units, _FIRST_STEPS, frozen) for m in models]
             models = [min(begun, key=lambda f: f.chi2).model]
-        found = _fit(rows, models[0], units, _ITERATIONS)
+        found = _fit(rows, models[0], units, _ITERATIONS, frozen)
         if TERMS[name].nonnegative and found.model.terms[-1].coefficient <= 0.0:
             continue
         fits[name] = found
     return reweighed(rows, contest, fits, effects), fits
 
 
+@dataclass(frozen=True)
+class _Frozen:
+    """A model whose changes of input and output stand still, so that its other terms only add."""
+
+    rows: tuple[RecordRows, ...]
+    """Records without what the changes make of their force."""
+    fit: ModelFit
+    """The model with its changes."""
+
+    @classmethod
+    def of(cls, rows: Sequence[RecordRows], fit: ModelFit, units: UnitRows) -> _Frozen | None:
+        """Return the model frozen; None where it has nothing to freeze."""
+        if not any(t.term.acts != "force" for t in fit.model.terms):
+            return None
+        plain = _without_changes(fit.model)
+        less = tuple(
+            replace(
+                r,
+                target=r.target
+                - units.of_model([r], fit.model)
+                + units.of_model([r], plain),
+            )
+            for r in rows
+        )
+        return cls(less, fit)
+
+    def whole(self, found: ModelFit) -> ModelFit:
+        """Return a fit of the other terms as one of the whole model, changes in their places."""
+        terms = self.fit.model.terms
+        places = [i for i, t in enumerate(terms) if t.term.acts == "force"]
+        places.append(len(terms))
+        others = iter(found.model.terms)
+        whole = [t if t.term.acts != "force" else next(others) for t in terms]
+        moved = [replace(p, term=places[p.term]) for p in found.parameters]
+        own = [i for i, p in enumerate(self.fit.parameters) if p.term not in places]
+        return replace(
+            found,
+            model=ForceModel((*whole, *others), found.model.name),
+            parameters=(*moved, *(self.fit.parameters[i] for i in own)),
+            tangents=np.concatenate([found.tangents, self.fit.tangents[own]]),
+        )
+
+
+def _without_changes(model: ForceModel) -> ForceModel:
+    return ForceModel(tuple(t for t in model.terms if t.term.acts == "force"), model.name)
+
+
 def _fit(
-    rows: Sequence[RecordRows], model: ForceModel, units: UnitRows, steps: int
+    rows: Sequence[RecordRows],
+    model: ForceModel,
+    units: UnitRows,
+    steps: int,
+    frozen: _Frozen | None,
 ) -> ModelFit:
+    if frozen is not None and model.terms[-1].term.acts == "force":
+        less = _without_changes(model)
+        found = fit_model(
+            frozen.rows, less, free_parameters(less), iterations=steps, enough=_ENOUGH,
+            units=UnitRows(),
+        )
+        return frozen.whole(found)
     return fit_model(
-        rows, model, free_parameters(model), iterations=steps, enough=_ENOUGH, units=units
+        rows, model, free_parameters(model), iterations=steps, enough=_ENOUGH, units=units,
+        exact=False,
     )

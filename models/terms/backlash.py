@@ -4,7 +4,7 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.joint import Joint, mass_of, through_joint
+from models.terms.joint import Joint, device_of, through_joint
 from models.terms.term import ForceOf, Parameter, Shape, Term
 
 
@@ -14,11 +14,12 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     The flanks' contact has the natural frequency `contact` (rad/s) with the device's mass.
     """
     force = force_of(motion)
-    stiffness = mass_of(force, motion) * shape["contact"] ** 2
+    device = device_of(force, motion)
+    stiffness = float(device[0]) * shape["contact"] ** 2
     if stiffness <= 0.0:
         return force
     joint = Joint(stiffness, shape["loss"], gap=shape["gap"], fluid_only=shape["inside"] > 0.0)
-    return np.asarray(force + coefficient * (through_joint(force, motion, joint) - force))
+    return np.asarray(force + coefficient * (through_joint(force, motion, joint, device) - force))
 
 
 TERM = Term(

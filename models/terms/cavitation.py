@@ -4,7 +4,7 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.joint import Joint, mass_of, through_joint
+from models.terms.joint import Joint, device_of, through_joint
 from models.terms.sensor_clipping import excess
 from models.terms.term import ForceOf, Parameter, Shape, Term
 
@@ -22,7 +22,8 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     if shape["contact"] == 0.0:
         cut = {"limit": limit, "softness": shape["softness"], "side": side}
         return np.asarray(force - coefficient * excess(force, cut))
-    stiffness = mass_of(force, motion) * shape["contact"] ** 2
+    device = device_of(force, motion)
+    stiffness = float(device[0]) * shape["contact"] ** 2
     if stiffness <= 0.0:
         return force
     lower, upper = (-np.inf, limit) if side > 0.0 else (-limit, np.inf)
@@ -34,7 +35,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         refilled=shape["refill"] > 0.0,
         fluid_only=True,
     )
-    return np.asarray(force + coefficient * (through_joint(force, motion, joint) - force))
+    return np.asarray(force + coefficient * (through_joint(force, motion, joint, device) - force))
 
 
 TERM = Term(

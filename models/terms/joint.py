@@ -19,6 +19,7 @@ _SETTLED = 3e-3
 _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle within one
 _MOST_INNER = 60
 _HARDEST = 8.0
+_RIDGE = 1e-12
 _SLOW = 0.002  # of the greatest speed, over which dry friction reverses in time stepping
 
 
@@ -46,22 +47,22 @@ class Joint:
     """True where dry friction is beside the joint and not behind it."""
 
 
-def mass_of(force: Array, motion: Motion) -> float:
-    """Return the mass that fits a device's force best beside its resistance, kg."""
-    return float(_device(force, motion)[0])
+def device_of(force: Array, motion: Motion) -> Array:
+    """Return the device that fits a force best: mass, viscous, quadratic and dry resistance.
 
-
-def _device(force: Array, motion: Motion) -> Array:
-    """Return mass, viscous, quadratic and dry resistance, none negative."""
+    In SI units; none is negative.
+    """
     v = motion.velocity
-    columns = np.stack([motion.acceleration, v, v * np.abs(v), np.sign(v)], axis=1)
-    scale = np.linalg.norm(columns, axis=0)
-    scale[scale == 0.0] = 1.0
-    found, _ = nnls(columns / scale, force - force.mean())
-    return np.asarray(found / scale)
+    columns = np.stack([motion.acceleration, v, v * np.abs(v), np.sign(v)])
+    gram = columns @ columns.T
+    scale = np.sqrt(np.diagonal(gram))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    factor = np.linalg.cholesky(gram / np.outer(scale, scale) + _RIDGE * np.eye(4))
+    seen = np.linalg.solve(factor, columns @ (force - force.mean()) / scale)
+    return np.asarray(nnls(factor.T, seen)[0] / scale)
 
 
-def through_joint(force: Array, motion: Motion, joint: Joint) -> Array:
+def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> Array:
     """Return the force (N,) with a joint before a device whose own force is `force`.
 
     Parameters
@@ -72,8 +73,10 @@ def through_joint(force: Array, motion: Motion, joint: Joint) -> Array:
         Of the driven end.
     joint : Joint
         What it is driven through.
+    device : ndarray, shape (4,)
+        What `device_of` makes of the force.
     """
-    mass, viscous, quadratic, dry = _device(force, motion)
+    mass, viscous, quadratic, dry = device
     if mass <= 0.0:
         return force
     v, x = motion.velocity, motion.displacement

@@ -2,7 +2,7 @@
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.joint import Joint, through_joint
+from models.terms.joint import Joint, device_of, through_joint
 from models.terms.term import ForceOf, Parameter, Shape, Term
 
 
@@ -22,7 +22,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         hardens=shape["side"],
         fluid_only=shape["inside"] > 0.0,
     )
-    return through_joint(force, motion, joint)
+    return through_joint(force, motion, joint, device_of(force, motion))
 
 
 TERM = Term(
