@@ -135,6 +135,8 @@ def judge(
     by_noise = several
     if several and not keep_all:
         best, probabilities, by_noise = _predictive(windows, dictionary, result, seed)
+    elif not several:
+        probabilities = _tempered(probabilities, weighed)
     final = list(weighed) if by_noise else _alike(weighed)
     engine = ProfiledFit(triangle_of(final), dictionary)
     fit = engine.fit(best)
@@ -155,6 +157,26 @@ def judge(
         structure=name_of(fit),
         probabilities={name: probabilities.get(name, 0.0) for name in STRUCTURES},
     )
+
+
+def _tempered(
+    probabilities: dict[str, float], windows: Sequence[WindowRows]
+) -> dict[str, float]:
+    """Return the probabilities that few tests support where models err by more than the noise.
+
+    What a model gets wrong in a test is one thing: its harmonics are not independent witnesses of
+    it. So the evidence counts two numbers a test, size and phase, and all rows only in so far as
+    noise is the limit.
+    """
+    rows = sum(float(w.count.sum()) for w in windows)
+    noise = sum(float(w.variance @ w.count) / max(w.power, 1e-300) for w in windows)
+    total = sum(float(w.total_variance @ w.count) / max(w.power, 1e-300) for w in windows)
+    low, high = _NOISE_LIMITED
+    share = float(np.clip((noise / max(total, 1e-300) - low) / (high - low), 0.0, 1.0))
+    power = share + (1.0 - share) * min(2.0 * len(windows) / rows, 1.0)
+    raised = {name: p**power if p > 0.0 else 0.0 for name, p in probabilities.items()}
+    whole = max(sum(raised.values()), 1e-300)
+    return {name: p / whole for name, p in raised.items()}
 
 
 def _material(

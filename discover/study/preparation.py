@@ -24,6 +24,7 @@ from models.terms import find_term
 _REVERSAL_SCALE = 0.5
 _TRANSITION_ROUNDS = 2
 _TRANSITIONS = 7
+_LEAST_TRANSITION = 0.1  # of the least transition speed of the standard dictionary
 _DELAY_ROUNDS = 4
 _NO_DELAY = 2e-6  # s
 _ORDERS = (0.0, 2.0)
@@ -166,11 +167,17 @@ def _without_delay(
 def _closer(dictionary: Dictionary, settled: Dictionary) -> Dictionary | None:
     """Return the dictionary with transition speeds between the best one's neighbours.
 
-    None where friction jumps: then there is nothing to refine.
+    Where friction jumps, a jump and speeds below the least are tried once.
     """
-    if not settled.has("coulomb-friction") or settled.transition_speeds[0] == 0.0:
+    if not settled.has("coulomb-friction"):
         return None
     speeds = dictionary.transition_speeds
+    if settled.transition_speeds[0] == 0.0:
+        if speeds.size < 2 or speeds.size == _TRANSITIONS + 1:
+            return None
+        least = float(speeds[1])
+        faster = np.geomspace(_LEAST_TRANSITION * least, least, _TRANSITIONS)
+        return dictionary.with_transitions(np.r_[0.0, faster])
     best = int(np.searchsorted(speeds, settled.transition_speeds[0]))
     low = speeds[best - 1] if best > 0 and speeds[best - 1] > 0.0 else 0.5 * speeds[best]
     high = speeds[best + 1] if best + 1 < speeds.size else 2.0 * speeds[best]
