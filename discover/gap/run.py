@@ -104,7 +104,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
     rows, start, final = baseline.rows, found.baseline, found.final
     seen = [i for i, r in enumerate(rows) if not r.observation.held_out]
     noise = pooled([final.misfits[i] for i in seen], noise=True)
-    stages = [start, *(r.stage for r in found.rounds)]
+    stages = [found.refitted, *(r.stage for r in found.rounds)]
     rounds = tuple(
         _named(baseline, entry, stages[i], stages[i + 1]) for i, entry in enumerate(found.rounds)
     )
@@ -150,8 +150,10 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
 
 def _verdict(found: Search, gap: float, noise: float) -> str:
     ended = found.last.ranked[0][0]
-    if not found.rounds:
-        return "agrees" if ended == AGREES else "unexplained"
+    if not found.rounds and ended != AGREES:
+        return "unexplained"
+    if not found.rounds and found.refitted is found.baseline:
+        return "agrees"
     if ended == AGREES or gap <= _CLOSED * noise:
         return "closed"
     return "reduced"
@@ -257,6 +259,24 @@ def _findings(baseline: Baseline, found: Search, text: str) -> tuple[Finding, ..
                     r.observation.file,
                 )
             )
+    if found.refitted is not found.baseline:
+        gaps = _seen(baseline, found.baseline), _seen(baseline, found.refitted)
+        result.append(
+            Finding(
+                "note",
+                f"Refitting the model's own coefficients alone brings the gap from {gaps[0]:.3g} %"
+                f" to {gaps[1]:.3g} %; the rounds start from there. --fixed holds them.",
+            )
+        )
+    if found.rejected is not None:
+        result.append(
+            Finding(
+                "warning",
+                f"{found.rejected} would lower the misfit in terms of the records' noise, but not"
+                " the gap in force, and is not added: the noise differs much between records, or"
+                " the model is wrong in more than one way.",
+            )
+        )
     for entry in found.rounds:
         for name in entry.dropped:
             result.append(
@@ -270,12 +290,6 @@ def _findings(baseline: Baseline, found: Search, text: str) -> tuple[Finding, ..
                 "warning",
                 f"What is left is more than noise, and no effect of the catalogue explains it"
                 f" (probability {ended[1]:.2f} that it is none of them).",
-            )
-        )
-    if not baseline.fixed and not baseline.fitted:
-        result.append(
-            Finding(
-                "note", "The given coefficients are refitted with each effect; --fixed holds them."
             )
         )
     return tuple(result)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from discover.gap.accuracy import Misfit, misfit
+from discover.gap.accuracy import Misfit, misfit, pooled
 from discover.gap.baseline import Baseline
 from discover.naming.contest import AGREES, UNKNOWN, Contest, run_contest
 from discover.naming.fit import (
@@ -24,6 +24,7 @@ MOST_ROUNDS = 6
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _SHAPE_DOUBT = 0.045  # of an effect's amplitude: no formula follows a measured shape closer
+_MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
 _FOLDS = 16
 _LEFT_OUT_STEPS = 3
 _LEFT_OUT_ENOUGH = 0.01
@@ -63,16 +64,20 @@ class Search:
     """The whole search."""
 
     baseline: Stage
-    """Before."""
+    """Before: the model as it was given, or its terms fitted."""
+    refitted: Stage
+    """The same terms with their free coefficients fitted; the baseline where there are none."""
     rounds: tuple[Round, ...]
     """In order."""
     last: Contest
     """That ended it."""
+    rejected: str | None = None
+    """An effect that would have lowered the misfit in its weights, but not the gap in N."""
 
     @property
     def final(self) -> Stage:
         """The last stage."""
-        return self.rounds[-1].stage if self.rounds else self.baseline
+        return self.rounds[-1].stage if self.rounds else self.refitted
 
 
 def stage(rows: Sequence[RecordRows], fit: ModelFit) -> Stage:
@@ -126,6 +131,9 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     fixed = fit_model(fitted, baseline.model, ())
     start = stage(rows, fixed)
     fit = fit_model(fitted, baseline.model, free_parameters(baseline.model))
+    moved = fixed.chi2 - fit.chi2 > _MOVED * fit.residual.size
+    refitted = stage(rows, fit) if moved else start
+    now = refitted
     names: list[tuple[str, int]] = []
     rounds: list[Round] = []
     tried: set[str] = set()
@@ -136,11 +144,11 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         contest, fits = _contest(fitted, fit, open_effects, _SHAPE_DOUBT**2 * explained)
         name = contest.ranked[0][0]
         if name in (AGREES, UNKNOWN) or len(rounds) >= most:
-            return Search(start, tuple(rounds), contest)
+            return Search(start, refitted, tuple(rounds), contest)
         mended = _mended(fitted, fit, contest, name, fits.get(name))
         gained = fit.chi2 - mended.chi2
         if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
-            return Search(start, tuple(rounds), contest)
+            return Search(start, refitted, tuple(rounds), contest)
         explained += gained
         first = len(fit.model.terms)
         mended, dropped, names = _without_superfluous(fitted, mended, names)
@@ -148,7 +156,17 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         tried |= set(dropped)
         names.append((name, first))
         fit = mended
-        rounds.append(Round(name, first, contest, stage(rows, fit), dropped))
+        after = stage(rows, fit)
+        if _pooled(rows, after) > _pooled(rows, now):
+            return Search(start, refitted, tuple(rounds), contest, name)
+        now = after
+        rounds.append(Round(name, first, contest, after, dropped))
+
+
+def _pooled(rows: Sequence[RecordRows], at: Stage) -> float:
+    """Return the gap of the fitted records, %."""
+    found = zip(rows, at.misfits, strict=True)
+    return pooled([m for r, m in found if not r.observation.held_out])
 
 
 def _contest(

@@ -50,8 +50,10 @@ class Joint:
 def device_of(force: Array, motion: Motion) -> Array:
     """Return the device that fits a force best: mass, viscous, quadratic and dry resistance.
 
-    In SI units; none is negative.
+    In SI units; none is negative, and all are zero for a force that is not finite.
     """
+    if not np.all(np.isfinite(force)):
+        return np.zeros(4)
     v = motion.velocity
     columns = np.stack([motion.acceleration, v, v * np.abs(v), np.sign(v)])
     gram = columns @ columns.T
