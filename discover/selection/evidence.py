@@ -28,7 +28,6 @@ from discover.selection.structures import (
 )
 from discover.triangle import Triangle
 
-
 _CANCELS = 5.0  # times the force: stiffness and inertia that take each other back
 
 

@@ -135,8 +135,12 @@ def judge(
     by_noise = several
     if several and not keep_all:
         best, probabilities, by_noise = _predictive(windows, dictionary, result, seed)
-    elif not several:
-        probabilities = _tempered(probabilities, weighed)
+    elif not several and not keep_all:
+        whole = contest(triangle_of(weighed), dictionary, supports)
+        probabilities = _tempered(whole.probabilities, weighed)
+        leading = max(probabilities, key=lambda name: probabilities[name])
+        chosen = result.best(leading) or whole.best(leading) or result.scored[0]
+        best = chosen.fit.support
     final = list(weighed) if by_noise else _alike(weighed)
     engine = ProfiledFit(triangle_of(final), dictionary)
     fit = engine.fit(best)

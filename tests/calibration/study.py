@@ -11,6 +11,7 @@ from discover.study import run_study
 from tests.calibration.generator import Case, random_case
 from tests.calibration.truth import TELLING, least_gap
 
+
 @dataclass(frozen=True)
 class Outcome:
     """What one case gave; None where a question does not arise."""
