@@ -78,12 +78,38 @@ def _share(
         power[:blocks] += window.power * window.count
         relative.append(rows[window.block == 1][:2] / np.sqrt(window.power))
     safe = np.maximum(power, 1e-300)
+    product, square = _alike(relative)
+    return _Share(excess / safe, np.sqrt(error) / safe, product, square)
+
+
+def _alike(relative: Sequence[Array]) -> tuple[float, float]:
+    """Return the sums over neighbours of their errors' products and mean squares."""
     product, square = 0.0, 0.0
     for one, two in pairwise(relative):
         if one.size == two.size:
             product += float(one @ two)
             square += 0.5 * float(one @ one + two @ two)
-    return _Share(excess / safe, np.sqrt(error) / safe, product, square)
+    return product, square
+
+
+def witnesses(product: float, square: float) -> float:
+    """Return how many independent witnesses a test is, from sums over neighbours' errors.
+
+    Of errors whose neighbours correlate by r, n count as n (1 - r) / (1 + r).
+    """
+    correlation = float(np.clip(product / square if square else 0.0, 0.0, _MOST_CORRELATED))
+    return (1.0 - correlation) / (1.0 + correlation)
+
+
+def witnesses_of(windows: Sequence[WindowRows], fit: SupportFit, coordinate: Array) -> float:
+    """Return how many independent witnesses of a fit's error a test is, between 1/9 and 1."""
+    relative = []
+    for index in np.argsort(coordinate, kind="stable"):
+        w = windows[int(index)]
+        rows = w.matrix[w.block == min(1, int(w.block.max()))]
+        error = rows[:, -1] - rows[:, :-1] @ fit.combined
+        relative.append(error[:2] / np.sqrt(max(w.power, 1e-300)))
+    return witnesses(*_alike(relative))
 
 
 def neighbours(coordinate: Array) -> list[Indices]:
@@ -127,8 +153,5 @@ def with_discrepancy(
     typical = np.quantile(padded, _QUANTILE, axis=0)
     certain = typical > 2.0 * np.median(spread, axis=0) / np.sqrt(max(len(groups) / 3.0, 1.0))
     level = np.where(certain, typical, 0.0)
-    square = sum(s.square for s in shares)
-    correlation = sum(s.product for s in shares) / square if square else 0.0
-    correlation = float(np.clip(correlation, 0.0, _MOST_CORRELATED))
-    level *= (1.0 + correlation) / (1.0 - correlation)
+    level /= witnesses(sum(s.product for s in shares), sum(s.square for s in shares))
     return [replace(w, discrepancy=level[: w.count.size] * w.power) for w in windows]

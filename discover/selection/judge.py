@@ -16,7 +16,7 @@ from discover.regression.support import (
     Support,
     SupportFit,
 )
-from discover.selection.discrepancy import with_discrepancy
+from discover.selection.discrepancy import with_discrepancy, witnesses_of
 from discover.selection.drift import with_zero_drift
 from discover.selection.evidence import Contest, contest, name_of
 from discover.selection.materiality import (
@@ -134,12 +134,16 @@ def judge(
     several = len({w.record for w in windows}) >= _CROSS_CHECKED
     by_noise = several
     if several and not keep_all:
-        best, probabilities, by_noise = _predictive(windows, dictionary, result, seed)
+        best, probabilities, by_noise = _predictive(
+            windows, dictionary, result, coordinate, seed
+        )
     elif not several and not keep_all:
         whole = contest(triangle_of(weighed), dictionary, supports)
         probabilities = _tempered(whole.probabilities, weighed)
         leading = max(probabilities, key=lambda name: probabilities[name])
-        chosen = result.best(leading) or whole.best(leading) or result.scored[0]
+        if result.best(leading) is None:
+            result = whole
+        chosen = result.best(leading) or result.scored[0]
         best = chosen.fit.support
     final = list(weighed) if by_noise else _alike(weighed)
     engine = ProfiledFit(triangle_of(final), dictionary)
@@ -200,7 +204,11 @@ def _material(
 
 
 def _predictive(
-    windows: Sequence[WindowRows], dictionary: Dictionary, result: Contest, seed: int
+    windows: Sequence[WindowRows],
+    dictionary: Dictionary,
+    result: Contest,
+    coordinate: Array,
+    seed: int,
 ) -> tuple[Support, dict[str, float], bool]:
     """Return the best support, the structures' probabilities, and whether noise is the limit.
 
@@ -225,7 +233,9 @@ def _predictive(
         own = [i for i in near if names[i] == name]
         standing[name] = own[predictions.only(own).parsimonious(parameters[own])]
     wins = predictions.only(list(standing.values())).wins(
-        list(standing), np.random.default_rng(seed)
+        list(standing),
+        np.random.default_rng(seed),
+        witnesses=witnesses_of(windows, fits[smallest], coordinate),
     )
     mixed = {
         name: share * result.probabilities.get(name, 0.0) + (1.0 - share) * wins.get(name, 0.0)

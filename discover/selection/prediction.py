@@ -59,12 +59,15 @@ class Predictions:
         rank = np.lexsort((self.mean, parameters))
         return int(next(i for i in rank if near[i]))
 
-    def wins(self, groups: Sequence[str], rng: np.random.Generator) -> dict[str, float]:
+    def wins(
+        self, groups: Sequence[str], rng: np.random.Generator, *, witnesses: float = 1.0
+    ) -> dict[str, float]:
         """Return how often each group holds the best fit when records are redrawn.
 
-        The Bayesian bootstrap: records weighted by a flat Dirichlet draw.
+        The Bayesian bootstrap: records weighted by a Dirichlet draw, flat where each is a witness
+        of its own; where neighbours err alike each counts for less, and the weights spread more.
         """
-        weights = rng.dirichlet(np.ones(self.errors.shape[1]), size=_DRAWS)
+        weights = rng.dirichlet(np.full(self.errors.shape[1], witnesses), size=_DRAWS)
         best = (weights @ self.errors.T).argmin(axis=1)
         names = np.array(groups)[best]
         return {str(n): float(np.mean(names == n)) for n in np.unique(names)}
