@@ -8,7 +8,7 @@ puts further effects in, in forms of their own. Everything follows from a seed.
 from models.rig.campaign import RigRecord, run
 from models.rig.chain import Chain, measure
 from models.rig.devices import random_device
-from models.rig.effects import CATALOGUE, FORMS, OUTSIDE, find_effect
+from models.rig.effects import CATALOGUE, FORMS, OUTSIDE, Effect, find_effect
 from models.rig.hiding import Hidden
 from models.rig.physics import RigPhysics
 from models.rig.plan import Limits, Plan, TestPoint, sine_plan, sine_point, transient_plan
@@ -18,6 +18,7 @@ __all__ = [
     "FORMS",
     "OUTSIDE",
     "Chain",
+    "Effect",
     "Hidden",
     "Limits",
     "Plan",

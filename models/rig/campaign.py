@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,7 +12,7 @@ from models.device import Device
 from models.rig.bench import find_scales, make_bench
 from models.rig.chain import Chain, measure
 from models.rig.drive import LEAD, Drive, make_drive
-from models.rig.effects import parse_sizes
+from models.rig.effects import Sizes, parse_sizes
 from models.rig.hiding import Hidden, hide
 from models.rig.physics import RigPhysics, flow_law
 from models.rig.plan import Plan
@@ -54,7 +53,7 @@ def run(
     *,
     seed: int,
     chain: Chain | None = None,
-    hidden: Mapping[str, float] | None = None,
+    hidden: Sizes | None = None,
     physics: RigPhysics | None = None,
 ) -> tuple[RigRecord, ...]:
     """Test a device on the rig.
@@ -71,7 +70,7 @@ def run(
     chain : Chain, optional
         The measuring chain.
     hidden : mapping, optional
-        Effects as "id" or "id:form", with their sizes: rms change in force over the rms force of
+        Effects as "id", "id:form" or an `Effect` of one's own, with their sizes: rms change in force over the rms force of
         the device without them, pooled over all samples. With several, each has its size alone.
     physics : RigPhysics, optional
         Which parts of the physics are simulated; all of them where not given.

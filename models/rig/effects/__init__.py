@@ -50,8 +50,12 @@ def find_effect(name: str, *, where: str = "hidden effect") -> Effect:
     )
 
 
-def parse_sizes(hidden: Mapping[str, float]) -> dict[Effect, float]:
-    """Return effects with their sizes from a mapping of names to sizes.
+Sizes = Mapping[str, float] | Mapping[Effect, float] | Mapping[str | Effect, float]
+"""Effects by name, or as they are where the rig has no name for them, with their sizes."""
+
+
+def parse_sizes(hidden: Sizes) -> dict[Effect, float]:
+    """Return effects with their sizes from a mapping of names, or effects, to sizes.
 
     Raises
     ------
@@ -59,8 +63,9 @@ def parse_sizes(hidden: Mapping[str, float]) -> dict[Effect, float]:
         For an unknown name or a size that isn't above 0 and at most 10.
     """
     result: dict[Effect, float] = {}
-    for name, size in hidden.items():
-        effect = find_effect(name)
+    for key, size in hidden.items():
+        effect = key if isinstance(key, Effect) else find_effect(key)
+        name = f"{effect.id}:{effect.form}" if isinstance(key, Effect) else key
         if effect in result:
             raise InputError("hidden effect", expected="named once", found=f"{name} twice")
         if not 0.0 < float(size) <= 10.0:
@@ -69,4 +74,4 @@ def parse_sizes(hidden: Mapping[str, float]) -> dict[Effect, float]:
     return result
 
 
-__all__ = ["CATALOGUE", "FORMS", "OUTSIDE", "Effect", "find_effect", "parse_sizes"]
+__all__ = ["CATALOGUE", "FORMS", "OUTSIDE", "Effect", "Sizes", "find_effect", "parse_sizes"]
