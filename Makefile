@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: study test check bench calibration notebooks clean
+.PHONY: study test check bench calibration blind notebooks clean
 
 study: $(VENV)/.installed ## discover on the shipped campaign; prints the verdict and the report's path
 	@$(BIN)/inerter discover --jobs $(JOBS)
@@ -25,6 +25,9 @@ bench: $(VENV)/.installed-dev ## times and errors beside other packages; keeps t
 
 calibration: $(VENV)/.installed-dev ## the seeded calibration study of structures and boundaries
 	$(BIN)/python -m tests.calibration --jobs $(JOBS)
+
+blind: $(VENV)/.installed-dev ## the blind study of missing effects, both sets; a run that was stopped goes on from build/
+	$(BIN)/python -m tests.calibration.gap --set both --jobs $(JOBS)
 
 notebooks: $(VENV)/.installed-notebooks ## run every notebook and keep its pictures
 	$(BIN)/jupyter nbconvert --to notebook --execute --inplace notebooks/*.ipynb

@@ -70,8 +70,9 @@ def run(
     chain : Chain, optional
         The measuring chain.
     hidden : mapping, optional
-        Effects as "id", "id:form" or an `Effect` of one's own, with their sizes: rms change in force over the rms force of
-        the device without them, pooled over all samples. With several, each has its size alone.
+        Effects as "id", "id:form" or an `Effect` of one's own, with their sizes: rms change in
+        force over the rms force of the device without them, pooled over all samples. With several,
+        each has its size alone.
     physics : RigPhysics, optional
         Which parts of the physics are simulated; all of them where not given.
 

@@ -1,0 +1,167 @@
+"""The blind study's rates beside their bars, in Markdown."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from statistics import fmean, median
+
+from scipy.stats import binomtest
+
+from tests.calibration.gap.study import FAILED, IMPOSSIBLE, Outcome
+
+BARS = {0.2: 0.95, 0.1: 0.90, 0.05: 0.80}
+"""Of effects named first, by size."""
+STATED, AGREES, UNKNOWN, SURE, BOTH, CLOSED = 0.97, 0.95, 0.80, 0.05, 0.75, 0.90
+"""Bars of the issue; `SURE` is the most."""
+MEDIAN_ALTERNATIVES, TIMES_NOISE, RELIABLE = 3, 1.3, 0.1
+EDGES = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0)
+
+
+def interval(right: int, asked: int) -> tuple[float, float]:
+    """Return the 95 % Clopper-Pearson interval of a rate."""
+    found = binomtest(right, asked).proportion_ci(0.95, method="exact")
+    return float(found.low), float(found.high)
+
+
+def parts(found: Sequence[Outcome]) -> dict[str, list[Outcome]]:
+    """Return outcomes by what was asked: "catalogue", "outside", "clean", "pairs"."""
+    result: dict[str, list[Outcome]] = {k: [] for k in ("catalogue", "outside", "clean", "pairs")}
+    for o in found:
+        ids = o.case.ids
+        if o.named[0] == IMPOSSIBLE:
+            continue
+        name = "clean" if not ids else "pairs" if len(ids) > 1 else "catalogue"
+        result["outside" if ids == ("outside",) else name].append(o)
+    return result
+
+
+def table(found: Sequence[Outcome], *, list_wrong: bool) -> str:
+    """Return rates, reliability and, where `list_wrong`, each wrong answer."""
+    part = parts(found)
+    single, outside, clean, pairs = part.values()
+    done = [*single, *outside, *clean, *pairs]
+    lines = ["| asked | campaigns right | 95 % interval | bar | met |", "|---|---|---|---|---|"]
+    for size in sorted({o.case.size for o in single}, reverse=True):
+        some = [o for o in single if o.case.size == size]
+        lines.append(_row(f"named first, {100 * size:g} %", some, _right, BARS.get(size)))
+    right = [o for o in single if o.right and o.expected != ("agrees",)]
+    lines += [
+        _row("among the stated, all sizes", single, lambda o: o.stated, STATED),
+        _row("nothing hidden: agrees", clean, _right, AGREES),
+        _row("outside the catalogue: unknown", outside, _right, UNKNOWN),
+        _row("outside: a name above 0.9", outside, _sure, SURE, most=True),
+        _row("pairs: both within three rounds", pairs, lambda o: o.both, BOTH),
+        _row(
+            "held-out gap ≤ 1.3 × noise, where right", right,
+            lambda o: o.ratio <= TIMES_NOISE, CLOSED,
+        ),
+    ]
+    if single:
+        count = median(len(o.alternatives) for o in single)
+        met = "yes" if count <= MEDIAN_ALTERNATIVES else "no"
+        lines.append(f"| alternatives, median | {count:g} | | ≤ {MEDIAN_ALTERNATIVES} | {met} |")
+    lines += ["", *reliability(done), "", *by_effect(single)]
+    lines += ["", *notes(found, done)]
+    if list_wrong:
+        lines += ["", "Wrong first answers:", "", *(_wrong(done) or ["none"])]
+    return "\n".join(lines)
+
+
+def reliability(found: Sequence[Outcome]) -> list[str]:
+    """Return the share that is right by stated probability, over all first answers."""
+    lines = [
+        "| stated probability | mean | campaigns right | 95 % interval | within ± 0.1 |",
+        "|---|---|---|---|---|",
+    ]
+    for low, high in zip(EDGES, EDGES[1:], strict=False):
+        last = high == EDGES[-1]
+        some = [
+            o for o in found
+            if not o.named[0].startswith(FAILED)
+            and (low <= o.probability < high or (last and o.probability >= high))
+        ]
+        if some:
+            hit, mean = sum(o.right for o in some), fmean(o.probability for o in some)
+            ends = _ends(hit, len(some))
+            met = "yes" if abs(hit / len(some) - mean) <= RELIABLE else "no"
+            lines.append(
+                f"| {low:g} to {high:g} | {mean:.2f} | {_share(hit, len(some))} | {ends} | {met} |"
+            )
+    return lines
+
+
+def by_effect(single: Sequence[Outcome]) -> list[str]:
+    """Return the share named first, by effect and size."""
+    sizes = sorted({o.case.size for o in single}, reverse=True)
+    head = "".join(f" {100 * s:g} % |" for s in sizes)
+    lines = [f"| effect |{head} baseline held | agrees expected |", "|---" * (len(sizes) + 3) + "|"]
+    for name in sorted({o.case.ids[0] for o in single}):
+        own = [o for o in single if o.case.ids[0] == name]
+        cells = ""
+        for size in sizes:
+            some = [o for o in own if o.case.size == size]
+            cells += f" {sum(o.right for o in some)} of {len(some)} |"
+        held, absent = sum(o.fixed for o in own), sum(o.expected == ("agrees",) for o in own)
+        lines.append(f"| {name} |{cells} {held} | {absent} |")
+    return lines
+
+
+def notes(found: Sequence[Outcome], done: Sequence[Outcome]) -> list[str]:
+    """Return what couldn't be hidden, what failed, time and the commits that answered."""
+    failed = sum(o.named[0].startswith(FAILED) for o in done)
+    commits = Counter(o.commit for o in found)
+    named = ", ".join(f"{c or 'unknown'} ({n})" for c, n in commits.most_common())
+    seconds = median(o.seconds for o in done) if done else 0.0
+    return [
+        f"{len(found) - len(done)} could not be hidden at their size; {failed} searches failed,"
+        f" counted as wrong; {seconds:.1f} s in the median. Answered by commit {named}; + marks"
+        " uncommitted changes."
+    ]
+
+
+def _right(outcome: Outcome) -> bool:
+    return outcome.right
+
+
+def _sure(outcome: Outcome) -> bool:
+    return not outcome.right and outcome.named[0] != "agrees" and outcome.probability > 0.9
+
+
+def _row(
+    text: str,
+    some: Sequence[Outcome],
+    hit: Callable[[Outcome], bool],
+    bar: float | None,
+    *,
+    most: bool = False,
+) -> str:
+    if not some:
+        return f"| {text} | – | | | not asked |"
+    right = sum(hit(o) for o in some)
+    rate = right / len(some)
+    ends = _ends(right, len(some))
+    if bar is None:
+        return f"| {text} | {_share(right, len(some))} | {ends} | | |"
+    met = "yes" if (rate <= bar if most else rate >= bar) else "no"
+    sign = "≤" if most else "≥"
+    return f"| {text} | {_share(right, len(some))} | {ends} | {sign} {100 * bar:g} % | {met} |"
+
+
+def _share(right: int, asked: int) -> str:
+    return f"{right} of {asked} ({100.0 * right / asked:.1f} %)"
+
+
+def _ends(right: int, asked: int) -> str:
+    low, high = interval(right, asked)
+    return f"{low:.2f} to {high:.2f}"
+
+
+def _wrong(found: Iterable[Outcome]) -> list[str]:
+    return [
+        f"- {'+'.join(o.case.hidden) or 'nothing'} {100 * o.case.size:g} %, seed {o.case.seed}"
+        f"{', held' if o.fixed else ''}: {o.named[0]} ({o.probability:.2f}), expected"
+        f" {' or '.join(o.expected)}"
+        for o in found
+        if not o.right
+    ]
