@@ -140,10 +140,10 @@ def judge(
     elif not several and not keep_all:
         whole = contest(triangle_of(weighed), dictionary, supports)
         probabilities = _tempered(whole.probabilities, weighed)
-        leading = max(probabilities, key=lambda name: probabilities[name])
-        if result.best(leading) is None:
+        first = max(probabilities, key=lambda name: probabilities[name])
+        if result.best(first) is None:
             result = whole
-        chosen = result.best(leading) or result.scored[0]
+        chosen = result.best(first) or result.scored[0]
         best = chosen.fit.support
     final = list(weighed) if by_noise else _alike(weighed)
     engine = ProfiledFit(triangle_of(final), dictionary)
