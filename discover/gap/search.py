@@ -143,7 +143,8 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         open_effects = [e for e in effects if e not in present and e not in tried]
         contest, fits = _contest(fitted, fit, open_effects, _SHAPE_DOUBT**2 * explained)
         name = contest.ranked[0][0]
-        if name in (AGREES, UNKNOWN) or len(rounds) >= most:
+        ended = name in (AGREES, UNKNOWN) or len(rounds) >= most
+        if ended or _within_doubt(rows, rounds, refitted):
             return Search(start, refitted, tuple(rounds), contest)
         mended = _mended(fitted, fit, contest, name, fits.get(name))
         gained = fit.chi2 - mended.chi2
@@ -161,6 +162,18 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
             return Search(start, refitted, tuple(rounds), contest, name)
         now = after
         rounds.append(Round(name, first, contest, after, dropped))
+
+
+def _within_doubt(
+    rows: Sequence[RecordRows], rounds: Sequence[Round], before: Stage
+) -> bool:
+    """Tell whether what is left is no more than the shapes of what was added may be wrong by."""
+    if not rounds:
+        return False
+    now = rounds[-1].stage
+    seen = [m for r, m in zip(rows, now.misfits, strict=True) if not r.observation.held_out]
+    left = _pooled(rows, now) ** 2 - pooled(seen, noise=True) ** 2
+    return left < _SHAPE_DOUBT**2 * (_pooled(rows, before) ** 2 - _pooled(rows, now) ** 2)
 
 
 def _pooled(rows: Sequence[RecordRows], at: Stage) -> float:

@@ -208,8 +208,9 @@ def _hysteresis(scales: Scales) -> list[Variant]:
 
 def _along(scales: Scales) -> list[Variant]:
     name, speed = "position-dependent-friction", scales.reversal
-    one, two = (Part(name, {"power": p, "transition_speed": speed}) for p in (1.0, 2.0))
-    return [Variant(name, (one,), 0), Variant(name, (two,), 0), Variant(name, (one, two), 0)]
+    one, two, four = (Part(name, {"power": p, "transition_speed": speed}) for p in (1.0, 2.0, 4.0))
+    sets = ((one,), (two,), (one, two), (two, four), (one, two, four))
+    return [Variant(name, parts, 0) for parts in sets]
 
 
 def _thermal(scales: Scales) -> list[Variant]:

@@ -16,7 +16,7 @@ from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
-_FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "heating")
+_FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill")
 _STEP = 1e-4  # of a value, for its tangent
 _JOINT_STEP = 5e-3  # likewise behind a joint, whose simulated cycle closes to a few thousandths
 _ITERATIONS = 40

@@ -8,7 +8,7 @@ from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return sign v times x (`power` 1) or x^2 (`power` 2), reversing as friction does."""
+    """Return sign v times x to a whole `power`, reversing as friction does."""
     speed = shape["transition_speed"]
     v, x = motion.velocity, motion.displacement
     direction = np.sign(v) if speed == 0.0 else np.tanh(v / speed)
@@ -21,7 +21,7 @@ TERM = Term(
     "f times x (or its square) times sign v",
     column,
     parameters=(
-        Parameter("power", 1.0, 2.0, 1.0, ""),
+        Parameter("power", 1.0, 4.0, 1.0, ""),
         Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
     ),
     mistaken_for=("hysteresis", "coulomb-friction"),

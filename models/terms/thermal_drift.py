@@ -10,14 +10,14 @@ from models.terms.term import Parameter, Shape, Term
 def column(motion: Motion, shape: Shape) -> Array:
     """Return velocity times 1 - exp(-t/T), m/s: the change of viscous damping with time.
 
-    `warming_time` 0 stands for a straight change, v t. With `heating` 1 the change is in
-    proportion to the mean square speed of the record, whose dissipation warms the oil.
+    `warming_time` 0 stands for a straight change, v t. With `heating` above 0 the change grows
+    with the record's mean square speed, in (m/s)^2, to that power: dissipation warms the oil.
     """
     elapsed = motion.time - motion.time[0]
     constant = shape["warming_time"]
     change = elapsed if constant == 0.0 else -np.expm1(-elapsed / constant)
-    power = float(np.mean(motion.velocity**2)) if shape["heating"] > 0.0 else 1.0
-    return np.asarray(motion.velocity * change * power)
+    warming = float(np.mean(motion.velocity**2)) ** shape["heating"]
+    return np.asarray(motion.velocity * change * warming)
 
 
 TERM = Term(
@@ -27,7 +27,7 @@ TERM = Term(
     column,
     parameters=(
         Parameter("warming_time", 0.1, 1e5, 0.0, "s", "", "log"),
-        Parameter("heating", 0.0, 1.0, 0.0, ""),
+        Parameter("heating", 0.0, 2.0, 0.0, ""),
     ),
     mistaken_for=("sensor-gain", "viscous-damping"),
     follows="time",
