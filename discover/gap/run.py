@@ -150,10 +150,8 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
 
 def _verdict(found: Search, gap: float, noise: float) -> str:
     ended = found.last.ranked[0][0]
-    if not found.rounds and ended != AGREES:
-        return "unexplained"
-    if not found.rounds and found.refitted is found.baseline:
-        return "agrees"
+    if not found.rounds:
+        return "agrees" if ended == AGREES else "unexplained"
     if ended == AGREES or gap <= _CLOSED * noise:
         return "closed"
     return "reduced"
