@@ -128,11 +128,13 @@ def _outcome(
 def outcomes(
     wanted: Sequence[Case], *, jobs: int = 1, keep: Path | None = None, commit: str = ""
 ) -> list[Outcome]:
-    """Return the outcome of every case; those in the file `keep` are not searched again.
+    """Return the outcome of every case; those in the file `keep` are not searched again
+    unless the search failed.
 
     Each outcome is appended to `keep` as one line of JSON as soon as it is there.
     """
-    known = {o.case.key: o for o in read_outcomes(keep)} if keep is not None else {}
+    kept = read_outcomes(keep) if keep is not None else []
+    known = {o.case.key: o for o in kept if not o.named[0].startswith(FAILED)}
     left = [case for case in wanted if case.key not in known]
     searched = Parallel(n_jobs=jobs, return_as="generator_unordered")(
         delayed(outcome)(case, commit) for case in left

@@ -99,7 +99,8 @@ def noise_power(case: Case, record: RigRecord) -> Array:
                 record.time, quiet, quiet, Chain(bits=0), rng, reference=rms, peak=1.0
             )
         total += np.abs(fft.rfft(noise, norm="ortho")) ** 2
-    return total / _DRAWS
+    # Of the mean of n draws of power, 1/mean is n/(n - 1) too great on average.
+    return total / (_DRAWS - 1)
 
 
 def whitened(values: Array, weight: Array) -> Array:
