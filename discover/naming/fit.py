@@ -184,7 +184,7 @@ def _tangents(
             change = fitted.coefficient * (units.of_all(rows, moved) - units.of_all(rows, fitted))
         else:
             change = units.of_model(rows, other) - at
-        result[index] = change / step
+        result[index] = np.where(np.isfinite(change), change, 0.0) / step
     return result
 
 
@@ -251,7 +251,7 @@ def fit_model(
     tangents = _tangents(rows, units, model, parameters, at, linear=linear, rough=True)
     settled = linear and all(p.shape is None for p in parameters)
     damping, idle = _DAMPING, 0
-    for _ in range(0 if settled else iterations):
+    for _ in range(0 if settled or not np.isfinite(chi2) else iterations):
         scale = np.linalg.norm(tangents, axis=1)
         safe = np.where(scale > 0.0, scale, 1.0)
         unit = tangents / safe[:, None]

@@ -69,8 +69,10 @@ def refine(
         models = [extended(fit.model, start) for start in starts]
         if len(models) > 1:
             begun = [_fit(rows, m, units, _FIRST_STEPS, frozen) for m in models]
-            models = [min(begun, key=lambda f: f.chi2).model]
+            models = [min(begun, key=lambda f: np.nan_to_num(f.chi2, nan=np.inf)).model]
         found = _fit(rows, models[0], units, _ITERATIONS, frozen)
+        if not np.isfinite(found.chi2):
+            continue
         if TERMS[name].nonnegative and found.model.terms[-1].coefficient <= 0.0:
             continue
         fits[name] = found
@@ -107,7 +109,8 @@ class _Frozen:
         """Return a fit of the other terms as one of the whole model, changes in their places."""
         terms = self.fit.model.terms
         places = [i for i, t in enumerate(terms) if t.term.acts == "force"]
-        places.append(len(terms))
+        added = len(found.model.terms) - len(places)
+        places += range(len(terms), len(terms) + added)
         others = iter(found.model.terms)
         whole = [t if t.term.acts != "force" else next(others) for t in terms]
         moved = [replace(p, term=places[p.term]) for p in found.parameters]
