@@ -33,7 +33,9 @@ _NO_AGREEMENT = 300.0  # of chi-square above the noise: then it can't be called 
 _PRIOR_PAIR = -6.0
 _PAIR_DOUBT = 0.17  # nats a row: two shapes explain more by chance
 _UNKNOWN_SHARE = 0.6
-_UNKNOWN_COST = 6.0
+_UNKNOWN_COST = 3.0
+_UNKNOWN_LEAST = 1.0
+_UNKNOWN_SLOPE = 2.0
 _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
 _UNEVEN = 5
@@ -296,6 +298,12 @@ def _pairs(
 def _probabilities(
     entries: Sequence[Entry], effects: Sequence[str], excess: float, informative: float
 ) -> dict[str, float]:
+    """Return the probability of every name.
+
+    The shape of an effect that is really there leaves little of what was missing. The more the
+    best one leaves, the less its fit says that it is none of the shapes that nobody wrote down.
+    """
+    chi2 = next(e.chi2 for e in entries if not e.effects)
     logs: dict[str, list[float]] = {}
     for e in entries:
         if not e.effects:
@@ -303,10 +311,15 @@ def _probabilities(
             logs[AGREES] = [e.log_evidence + _PRIOR_AGREES - doubt]
         else:
             logs.setdefault(e.effects[0], []).append(e.log_evidence)
+    scaled = {k: float(logsumexp(np.array(v) / _TEMPERATURE)) for k, v in logs.items()}
     if excess > 0.0:
         explained = 0.5 * cost(_UNKNOWN_SHARE * excess, informative)
-        logs[UNKNOWN] = [-explained - _UNKNOWN_COST]
-    scaled = {k: float(logsumexp(np.array(v) / _TEMPERATURE)) for k, v in logs.items()}
+        scaled[UNKNOWN] = (-explained - _UNKNOWN_COST) / _TEMPERATURE
+        best = next((e for e in entries if e.effects), None)
+        if best is not None:
+            left = max(best.chi2 - (chi2 - excess), 0.0) / excess
+            doubt = _UNKNOWN_LEAST + _UNKNOWN_SLOPE * np.log(_UNKNOWN_SHARE / max(left, 1e-6))
+            scaled[UNKNOWN] = max(scaled[UNKNOWN], scaled[best.effects[0]] - max(doubt, 0.0))
     total = float(logsumexp(list(scaled.values())))
     result = {k: float(np.exp(v - total)) for k, v in scaled.items()}
     for name in (*effects, AGREES, UNKNOWN):
