@@ -1,0 +1,63 @@
+"""A whole gap search on 16 sine tests: every effect of the catalogue, all rounds, all judging.
+
+``python -m tests.benchmarks gap`` prints the rows and keeps them; `rows` returns them.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import numpy as np
+
+from discover.gap import close_gap
+from discover.records import Campaign, Record
+from tests.benchmarks.bench_study import Row
+
+_AMPLITUDES = (0.003, 0.006, 0.012, 0.020)
+_FREQUENCIES = (0.3, 0.8, 2.0, 5.0)
+_CYCLES = 8.3
+_SIZES = (2_500, 10_000)
+_TERMS = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
+
+
+def campaign(samples: int, hidden: str) -> Campaign:
+    """Return 16 tests of a laminar device with something hidden, 1 % noise."""
+    rng = np.random.default_rng(1)
+    records = []
+    for amplitude in _AMPLITUDES:
+        for frequency in _FREQUENCIES:
+            omega = 2.0 * np.pi * frequency
+            seconds = np.arange(samples) * (_CYCLES / frequency / samples)
+            angle = omega * seconds + rng.uniform(0.0, 2.0 * np.pi)
+            x, v = amplitude * np.sin(angle), amplitude * omega * np.cos(angle)
+            force = -300.0 * omega**2 * x + 2e3 * v + 2e4 * v * np.abs(v)
+            force += 300.0 * np.tanh(v / 1e-3)
+            if hidden == "stiffness":
+                force += 4e4 * x
+            elif hidden == "play":  # a slider that yields, then slips
+                force += 200.0 * np.clip(np.sin(angle - 0.6) / 0.4, -1.0, 1.0)
+            force += 0.01 * np.sqrt(np.mean(force**2)) * rng.standard_normal(samples)
+            x = x + 1e-7 * rng.standard_normal(samples)
+            records.append(Record(f"{frequency:.3g}hz-{1e3 * amplitude:g}mm", seconds, force, x))
+    return Campaign("16 tests", tuple(records), content_hash="0")
+
+
+def rows() -> Iterator[Row]:
+    """Yield all rows."""
+    close_gap(campaign(1_000, "stiffness"), _TERMS)  # compiles
+    for hidden in ("nothing", "stiffness", "play"):
+        for samples in _SIZES:
+            tests = campaign(samples, hidden)
+            begin = time.perf_counter()
+            found = close_gap(tests, _TERMS)
+            seconds = time.perf_counter() - begin
+            named = ", ".join(r.effect for r in found.rounds) or "nothing"
+            yield f"16 records of {samples:,} samples, hidden: {hidden}", seconds, "s", (
+                f"{found.verdict}, named {named}"
+            )
+
+
+if __name__ == "__main__":
+    for what, value, unit, beside in rows():
+        print(f"{what}: {value:.3g} {unit}" + (f" ({beside})" if beside else ""))

@@ -1,0 +1,88 @@
+"""Fits of a model to whitened rows, against closed formulas and plain least squares."""
+
+import numpy as np
+import pytest
+
+from discover.gap.search import stage
+from discover.motion_fit import observe
+from discover.naming.fit import fit_model, free_parameters, kind_of
+from discover.naming.rows import record_rows
+from models.constitutive import FittedTerm, ForceModel
+from tests.discover.gap_data import campaign, device
+
+
+def rows_of(law, **options):
+    return [record_rows(observe(r)) for r in campaign(law, **options).records]
+
+
+def model(*terms):
+    return ForceModel(tuple(FittedTerm(*t) for t in terms))
+
+
+def fitted(rows, start):
+    return fit_model(rows, start, free_parameters(start))
+
+
+def test_coefficients_are_those_of_plain_least_squares():
+    rows = rows_of(device)
+    fit = fitted(rows, model(("inertia", 1.0), ("viscous-damping", 1.0)))
+    columns = [
+        np.concatenate([r.project(getattr(r.observation.motion, name)) for r in rows])
+        for name in ("acceleration", "velocity")
+    ]
+    target = np.concatenate([r.target for r in rows])
+    plain = np.linalg.lstsq(np.stack(columns, axis=1), target, rcond=None)[0]
+    between_points = (2.0 * np.pi / rows[0].observation.cycle.time.size) ** 2 / 8.0
+    found = [t.coefficient for t in fit.model.terms]
+    assert found == pytest.approx(list(plain), rel=2.0 * between_points)
+
+
+@pytest.mark.parametrize("start", [0.25, 1.3, 2.6])
+def test_an_exponent_is_found_from_far_away(start):
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 900.0 * np.sign(v) * np.abs(v) ** 0.6
+
+    begin = model(
+        ("inertia", 1.0), ("viscous-damping", 1.0), ("power-law-damping", 1.0, {"exponent": start})
+    )
+    fit = fitted(rows_of(law), begin)
+    assert fit.model.terms[-1].shape["exponent"] == pytest.approx(0.6, abs=0.03)
+    assert fit.chi2 < 1.3 * fit.residual.size
+
+
+def test_a_stop_is_found_from_a_wrong_gap_and_a_wrong_exponent():
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 4e6 * np.sign(x) * np.maximum(np.abs(x) - 0.0091, 0.0) ** 1.5
+
+    begin = model(
+        ("inertia", 1.0),
+        ("viscous-damping", 1.0),
+        ("end-stop", 1.0, {"gap": 0.0075, "exponent": 2.5, "side": 0.0}),
+    )
+    fit = fitted(rows_of(law), begin)
+    found = fit.model.terms[-1]
+    assert found.shape["gap"] == pytest.approx(0.0091, rel=0.01)
+    assert found.shape["exponent"] == pytest.approx(1.5, abs=0.1)
+    assert fit.chi2 < 1.3 * fit.residual.size
+
+
+def test_a_record_left_out_is_predicted_by_a_fit_of_the_others():
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 3e7 * x**3
+
+    rows = rows_of(law)
+    start = model(("inertia", 1.0), ("viscous-damping", 1.0), ("cubic-stiffness", 1.0))
+    fit = fitted(rows, start)
+    unseen = stage(rows, fit).unseen
+    for index in (0, 5):
+        rest = fitted([r for i, r in enumerate(rows) if i != index], start)
+        motion = rows[index].observation.motion
+        left = rows[index].observation.measured - rest.model.force(motion)
+        assert unseen[index].error == pytest.approx(float(np.mean(left**2)), rel=1e-3)
+
+
+def test_the_shapes_of_one_kind_differ_only_in_what_a_fit_changes():
+    sharp = {"gap": 0.01, "exponent": 2.0, "side": 1.0}
+    assert kind_of(sharp) == kind_of({**sharp, "gap": 0.02, "exponent": 1.2})
+    assert kind_of(sharp) != kind_of({**sharp, "side": -1.0})
+    assert kind_of({"transition_speed": 0.0}) != kind_of({"transition_speed": 0.01})

@@ -1,0 +1,43 @@
+"""Where the rounds of a gap search start and end."""
+
+import numpy as np
+import pytest
+
+from discover.gap import close_gap
+from models.constitutive import FittedTerm, ForceModel
+from tests.discover.gap_data import campaign, device
+
+WRONG = ForceModel((FittedTerm("inertia", 100.0), FittedTerm("viscous-damping", 700.0)))
+
+
+def test_what_refitting_gains_is_not_credited_to_the_effect():
+    found = close_gap(campaign(lambda t, x, v, a: device(t, x, v, a) + 20.0), WRONG)
+    (only,) = found.rounds
+    assert only.effect == "force-offset"
+    assert found.gap_percent > 1.3 * only.gap[0]
+    assert any("Refitting" in f.text for f in found.findings)
+
+
+def test_a_wrong_coefficient_alone_is_no_missing_effect():
+    found = close_gap(campaign(device), WRONG)
+    assert found.verdict == "agrees"
+    assert found.rounds == ()
+    assert found.gap_percent > 10.0
+    assert found.final_gap_percent == pytest.approx(1.0, rel=0.1)
+
+
+def test_a_shape_that_is_a_little_off_brings_no_second_name():
+    def law(t, x, v, a):
+        hardening = 4e7 * x**3 * (1.0 + 0.08 * (x / 0.012) ** 2)
+        return device(t, x, v, a) + hardening
+
+    found = close_gap(campaign(law), "fit:inertia,viscous-damping")
+    assert [r.effect for r in found.rounds] == ["cubic-stiffness"]
+
+
+def test_a_force_that_is_no_entry_is_not_named_for_sure():
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 1.5e6 * x**2 * np.abs(v) * np.cos(3e4 * x**2)
+
+    found = close_gap(campaign(law), "fit:inertia,viscous-damping")
+    assert not found.rounds or found.rounds[0].probability < 0.9
