@@ -11,7 +11,9 @@ from models.checks import Array
 
 _MOST_HARMONICS = 100
 _FEWEST_BINS = 14
-_BINS = 24
+_BINS = 48
+_SLOPE_FROM = 8
+_STEEPEST = 2.0
 _CLEAR = 1.6
 _REVERSALS = (0.01, 0.03, 0.1)
 
@@ -71,4 +73,17 @@ def noise_density(observation: Observation, slow: int) -> tuple[Array, Array]:
             start = stop
     if not middle:
         return np.array([frequency]), np.array([float(np.mean(density[clear]))])
-    return np.array(middle), np.array(level)
+    return _with_rise(np.array(middle), np.array(level), 0.1 * width)
+
+
+def _with_rise(frequencies: Array, level: Array, lowest: float) -> tuple[Array, Array]:
+    """Return a density continued to `lowest` along the slope of its lower part.
+
+    Below a test's frequency hardly a line is clear, and that is where drifting noise is strongest.
+    """
+    few = min(_SLOPE_FROM, frequencies.size)
+    if few < 3:
+        return frequencies, level
+    slope = np.polyfit(np.log(frequencies[:few]), np.log(level[:few]), 1)[0]
+    rise = (lowest / frequencies[0]) ** float(np.clip(slope, -_STEEPEST, 0.0))
+    return np.append(lowest, frequencies), np.append(level[0] * rise, level)

@@ -22,6 +22,7 @@ from models.constitutive import FittedTerm
 _TOLERANCE = 1e-4  # of a record's force: no model is better, and no misfit below it matters
 _SLOW = 3
 _MODULATED = 3
+_MEAN_AT = 0.3  # of a line, where the spectrum of drifting noise is what moves the mean
 _SLOW_DOUBT = 2.0  # of the noise's variance below the test's frequency: it is extrapolated
 _MAINS = (50.0, 60.0)
 
@@ -87,8 +88,10 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
     order = np.concatenate(([0.0], np.repeat(np.arange(1.0, count + 1), 2), lines)).astype(int)
     if observation.record.uniform:
         at, density = noise_density(observation, _SLOW)
-        wanted = np.log(np.maximum(order, 0.3) * frequency)
-        smooth = np.exp(np.interp(wanted, np.log(at), np.log(density)))
+        wanted = order * frequency
+        wanted[0] = _MEAN_AT / duration
+        wanted[2 * count + 1 : 2 * count + 1 + _SLOW] = 0.5 * np.arange(1, _SLOW + 1) / duration
+        smooth = np.exp(np.interp(np.log(wanted), np.log(at), np.log(density)))
         variance = 0.5 * smooth * size / duration + size * _TOLERANCE**2 * window.power
     else:
         variance = size * (window.variance + _TOLERANCE**2 * window.power)[order]
