@@ -69,11 +69,21 @@ def noise_density(observation: Observation, slow: int) -> tuple[Array, Array]:
         if stop - start >= _FEWEST_BINS or (edge == edges[-1] and stop - start >= 3):
             some = clear[start:stop]
             middle.append(float(np.exp(np.mean(np.log(frequencies[some])))))
-            level.append(float(np.median(density[some]) / np.log(2.0)))
+            level.append(_level(density[some]))
             start = stop
     if not middle:
         return np.array([frequency]), np.array([float(np.mean(density[clear]))])
     return _with_rise(np.array(middle), np.array(level), 0.1 * width)
+
+
+def _level(density: Array) -> float:
+    """Return the level of exponentially scattered densities, whatever the greatest one is.
+
+    The median does not see a hum; the mean of all but the greatest does see a resonance.
+    """
+    expected = density.size - float(np.sum(1.0 / np.arange(1, density.size + 1)))
+    rest = float(density.sum() - density.max()) / expected
+    return max(float(np.median(density)) / float(np.log(2.0)), rest)
 
 
 def _with_rise(frequencies: Array, level: Array, lowest: float) -> tuple[Array, Array]:
