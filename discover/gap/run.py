@@ -283,11 +283,12 @@ def _findings(baseline: Baseline, found: Search, text: str) -> tuple[Finding, ..
             )
     ended = found.last.ranked[0]
     if ended[0] == UNKNOWN:
+        chance = "over 0.99" if ended[1] > 0.99 else f"{ended[1]:.2f}"
         result.append(
             Finding(
                 "warning",
                 f"What is left is more than noise, and no effect of the catalogue explains it"
-                f" (probability {ended[1]:.2f} that it is none of them).",
+                f" (probability {chance} that it is none of them).",
             )
         )
     return tuple(result)
