@@ -23,7 +23,7 @@ from models.flow import dean_per_speed
 VERDICTS = ("consistent", "contradicted", "undetermined", "no-boundary", "no-geometry")
 _EXPONENTS = np.linspace(-3.0, 2.0, 101)
 _PLACES = 400
-_SAME_AMPLITUDE = 1.15  # ratio below which amplitudes count as one
+_SAME = 1.15  # ratio below which amplitudes, or frequencies, count as one
 
 
 @dataclass(frozen=True)
@@ -94,11 +94,11 @@ def amplitude_exponent(
     Returns
     -------
     AmplitudeExponent or None
-        None where the tests have one amplitude only.
+        None where the tests have one amplitude or one frequency only.
     """
     amplitude = np.log(np.array([w.amplitude for w in windows]))
     frequency = np.log(np.array([w.frequency for w in windows]))
-    if np.ptp(amplitude) < np.log(_SAME_AMPLITUDE):
+    if min(np.ptp(amplitude), np.ptp(frequency)) < np.log(_SAME):
         return None
     centre = amplitude.mean()
     gain = below - above
@@ -148,7 +148,7 @@ def check_dean(
     boundary : tuple or None
         Speed amplitude at the lowest boundary and its interval, m/s; None where there is none.
     exponent : AmplitudeExponent or None
-        None where the plan has one amplitude.
+        None where the tests have one amplitude or one frequency.
     convention, criterion
         What is checked.
 
@@ -198,9 +198,9 @@ def check_dean(
     if k_interval is None:
         return result(
             "undetermined",
-            f"The boundary lies at a Dean number of {span}, but the tests have one amplitude: a"
-            " boundary fixed in frequency would look the same. Repeat the tests beside the"
-            " boundary at half and at twice the amplitude.",
+            f"The boundary lies at a Dean number of {span}, but the tests beside it have one"
+            " amplitude or one frequency: a boundary fixed in frequency would look the same."
+            " Repeat them at half and at twice the amplitude and the frequency.",
             dean,
             both,
         )

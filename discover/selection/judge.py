@@ -115,14 +115,9 @@ def judge(
     result = contest(triangle_of(weighed), dictionary, supports)
     if not keep_all:
         worth = Worth(windows, [s.fit for s in result.scored])
-        candidates = [
-            s.fit.support
-            for s in result.scored
-            if np.isfinite(s.log_evidence) and worth.all_terms(s.fit)
-        ]
-        if len({w.record for w in windows}) < _CROSS_CHECKED:
-            candidates = _material(result, Materiality(windows, dictionary), set(candidates))
-        candidates = candidates[:_KEPT] or [result.scored[0].fit.support]
+        few = len({w.record for w in windows}) < _CROSS_CHECKED
+        materiality = Materiality(windows, dictionary) if few else None
+        candidates = _leading(result, worth, materiality) or [result.scored[0].fit.support]
         for _ in range(_ROUNDS):
             leading = candidates[0]
             weighed = with_discrepancy(windows, dictionary, coordinate, [leading])
@@ -139,12 +134,9 @@ def judge(
         )
     elif not several and not keep_all:
         whole = contest(triangle_of(weighed), dictionary, supports)
-        probabilities = _tempered(whole.probabilities, weighed)
-        first = max(probabilities, key=lambda name: probabilities[name])
-        if result.best(first) is None:
-            result = whole
-        chosen = result.best(first) or result.scored[0]
-        best = chosen.fit.support
+        probabilities = _few(result, whole, weighed)
+        first = max((s.structure for s in result.scored), key=lambda name: probabilities[name])
+        best = (result.best(first) or result.scored[0]).fit.support
     final = list(weighed) if by_noise else _alike(weighed)
     engine = ProfiledFit(triangle_of(final), dictionary)
     fit = engine.fit(best)
@@ -172,32 +164,48 @@ def _tempered(
 ) -> dict[str, float]:
     """Return the probabilities that few tests support where models err by more than the noise.
 
-    What a model gets wrong in a test is one thing: its harmonics are not independent witnesses of
-    it. So the evidence counts two numbers a test, size and phase, and all rows only in so far as
-    noise is the limit.
+    What a model gets wrong in a record is one thing: its harmonics and windows are not independent
+    witnesses of it. So the evidence counts two numbers a record, size and phase, and all rows only
+    in so far as noise is the limit.
     """
     rows = sum(float(w.count.sum()) for w in windows)
+    tests = len({w.record for w in windows})
     noise = sum(float(w.variance @ w.count) / max(w.power, 1e-300) for w in windows)
     total = sum(float(w.total_variance @ w.count) / max(w.power, 1e-300) for w in windows)
     low, high = _NOISE_LIMITED
     share = float(np.clip((noise / max(total, 1e-300) - low) / (high - low), 0.0, 1.0))
-    power = share + (1.0 - share) * min(2.0 * len(windows) / rows, 1.0)
+    power = share + (1.0 - share) * min(2.0 * tests / rows, 1.0)
     raised = {name: p**power if p > 0.0 else 0.0 for name, p in probabilities.items()}
     whole = max(sum(raised.values()), 1e-300)
     return {name: p / whole for name, p in raised.items()}
 
 
-def _material(
-    result: Contest, materiality: Materiality, among: set[Support]
-) -> list[Support]:
-    """Return the supports whose terms all matter, best first, some of every structure."""
+def _few(result: Contest, whole: Contest, windows: Sequence[WindowRows]) -> dict[str, float]:
+    """Return the structures' probabilities where few records check one another.
+
+    The evidence over all models and that over those whose terms all matter (`result`) count alike.
+    Where only unnamed ones are among the latter the former speaks alone: that a structure's further
+    term does not show is no reason to think that it is absent.
+    """
+    named = {s.structure for s in result.scored} != {"other"}
+    views = [
+        _tempered(c.probabilities, windows) for c in ((whole, result) if named else (whole,))
+    ]
+    return {name: sum(v[name] for v in views) / len(views) for name in STRUCTURES}
+
+
+def _leading(result: Contest, worth: Worth, materiality: Materiality | None) -> list[Support]:
+    """Return the supports whose terms are all worth a name, best first, some of every structure.
+
+    Where few records check one another, `materiality` judges them too.
+    """
     kept: list[Support] = []
     count = dict.fromkeys(STRUCTURES, 0)
     for scored in result.scored:
         full = len(kept) >= _KEPT and count[scored.structure] >= _KEPT_OF_EACH
-        if full or scored.fit.support not in among:
+        if full or not np.isfinite(scored.log_evidence) or not worth.all_terms(scored.fit):
             continue
-        if materiality.holds(scored.fit.support):
+        if materiality is None or materiality.holds(scored.fit.support):
             kept.append(scored.fit.support)
             count[scored.structure] += 1
     return kept
@@ -232,7 +240,7 @@ def _predictive(
     for name in dict.fromkeys(names[i] for i in near):
         own = [i for i in near if names[i] == name]
         standing[name] = own[predictions.only(own).parsimonious(parameters[own])]
-    wins = predictions.only(list(standing.values())).wins(
+    wins = predictions.only(list(standing.values())).shares(
         list(standing),
         np.random.default_rng(seed),
         witnesses=witnesses_of(windows, fits[smallest], coordinate),

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import softmax
 
 from discover.regression.support import SupportFit
 from discover.selection.materiality import record_power
@@ -59,18 +60,23 @@ class Predictions:
         rank = np.lexsort((self.mean, parameters))
         return int(next(i for i in rank if near[i]))
 
-    def wins(
+    def shares(
         self, groups: Sequence[str], rng: np.random.Generator, *, witnesses: float = 1.0
     ) -> dict[str, float]:
-        """Return how often each group holds the best fit when records are redrawn.
+        """Return the probability that each group's fit is the one that predicts.
 
-        The Bayesian bootstrap: records weighted by a Dirichlet draw, flat where each is a witness
-        of its own; where neighbours err alike each counts for less, and the weights spread more.
+        Model errors are taken as normal, of unknown size, and two a record (size and phase) as
+        independent where each record is a witness of its own: the likelihood of a fit falls with
+        the power `records * witnesses` of its mean square error. It is averaged over redrawn
+        records by the Bayesian bootstrap (records weighted by a Dirichlet draw, flat for
+        independent witnesses; the fewer they are, the more the weights spread).
         """
-        weights = rng.dirichlet(np.full(self.errors.shape[1], witnesses), size=_DRAWS)
-        best = (weights @ self.errors.T).argmin(axis=1)
-        names = np.array(groups)[best]
-        return {str(n): float(np.mean(names == n)) for n in np.unique(names)}
+        count = self.errors.shape[1]
+        weights = rng.dirichlet(np.full(count, witnesses), size=_DRAWS)
+        logs = -count * witnesses * np.log(np.maximum(weights @ self.errors.T, 1e-300))
+        mean = softmax(logs, axis=1).mean(axis=0)
+        names = np.array(groups)
+        return {str(n): float(mean[names == n].sum()) for n in np.unique(names)}
 
 
 def leave_out(windows: Sequence[WindowRows], fits: Sequence[SupportFit]) -> Predictions:

@@ -5,7 +5,8 @@ squares of their own, on closed forms with coefficients that are not negative, a
 exact force of new tests inside the band: fractional, and every subset of inertia and damping, each
 with and without friction and elasticity. The best predictor's structure is the truth; so are those
 that predict alike, which the choice of the new tests decides. "other" is what has no inertia, or
-much stiffness; where the study states "other", its own terms are refitted and take part too.
+much stiffness; the terms that the study states are refitted, its order or exponent held, and take
+part too.
 """
 
 from __future__ import annotations
@@ -36,17 +37,19 @@ _REVERSAL = 0.05  # of the speed amplitude: friction reverses over a range
 _PLANS = ("wide", "narrow", "single", "one amplitude")
 _EXTRAS = (
     (), ("friction",), ("stiffness",), ("friction", "stiffness"), ("friction", "cubic"),
-    ("friction", "softening"), ("friction", "stiffness", "softening"),
+    ("friction", "-cubic"), ("friction", "stiffness", "-cubic"),
 )
 _TRANSITIONS = (0.0, 0.03, 0.1, 0.3)  # over the least speed amplitude
 _PLAIN = ("inertia", "viscous", "quadratic", "turbulent")
-_ELASTIC = ("stiffness", "cubic", "softening")
+_ELASTIC = ("stiffness", "cubic", "-cubic")
+_SIDE = {"friction", "asymmetric", "offset", *_ELASTIC}
 MINOR = 0.25
 """Share of the force up to which stiffness leaves a structure its name."""
 _NAMES = {
     "inertia": "inertia", "viscous-damping": "viscous", "quadratic-damping": "quadratic",
     "power-law-damping": "turbulent", "fractional-derivative": "fractional",
-    "coulomb-friction": "friction", "stiffness": "stiffness",
+    "coulomb-friction": "friction", "stiffness": "stiffness", "cubic-stiffness": "cubic",
+    "asymmetric-damping": "asymmetric", "force-offset": "offset",
 }
 
 
@@ -103,10 +106,17 @@ class _Waves:
         return np.exp(1j * np.outer(self.time, w))
 
     def column(self, name: str, transition: float) -> np.ndarray:
-        """Return a term of unit coefficient at every sample; friction reverses over a speed."""
+        """Return a term of unit coefficient at every sample; friction reverses over a speed.
+
+        A minus before a name turns its sign; "power" is followed by its exponent.
+        """
+        if name.startswith("-"):
+            return -self.column(name[1:], transition)
         if name == "inertia":
             return self.derivative(2.0)
         v = self.derivative(1.0)
+        if name.startswith("power"):
+            return np.sign(v) * np.abs(v) ** float(name[5:])
         return {
             "viscous": v,
             "quadratic": v * np.abs(v),
@@ -114,7 +124,8 @@ class _Waves:
             "friction": np.sign(v) if transition == 0.0 else np.tanh(v / transition),
             "stiffness": self.derivative(0.0),
             "cubic": self.derivative(0.0) ** 3,
-            "softening": -self.derivative(0.0) ** 3,
+            "asymmetric": np.abs(v),
+            "offset": np.ones_like(v),
         }[name]
 
 
@@ -141,10 +152,8 @@ class _Tests:
             for w, f in zip(waves, forces, strict=True)
         ]
         self.target = self._stack(forces)
-        self._known = {
-            name: self._stack([w.column(name, transition) for w in waves])
-            for name in (*_PLAIN, *_ELASTIC, "friction")
-        }
+        self._transition = transition
+        self._known: dict[str, np.ndarray] = {}
 
     def _stack(self, values: Sequence[np.ndarray]) -> np.ndarray:
         return np.concatenate(
@@ -152,6 +161,8 @@ class _Tests:
         )
 
     def columns(self, names: Sequence[str], order: float) -> np.ndarray:
+        for n in set(names) - set(self._known) - {"fractional"}:
+            self._known[n] = self._stack([w.column(n, self._transition) for w in self.waves])
         return np.stack(
             [
                 self._stack([w.derivative(order) for w in self.waves])
@@ -177,13 +188,16 @@ def _candidates() -> list[tuple[str, ...]]:
 
 def name_of(names: Sequence[str], elastic: float) -> str:
     """Return the structure of a model, given the share of stiffness in its force."""
-    core = set(names) - {"friction", "stiffness", "cubic", "softening"}
+    core = {n for n in names if n.lstrip("-") not in _SIDE}
     if elastic > MINOR:
         return "other"
     if core == {"fractional"}:
         return "FOIM"
-    if "inertia" not in core or "fractional" in core:
+    powers = [float(n[5:]) for n in core if n.startswith("power")]
+    if "inertia" not in core or "fractional" in core or any(not 1.5 <= p <= 2.0 for p in powers):
         return "other"
+    if powers:
+        return "IOIM-turbulent"
     if "turbulent" in core:
         return "IOIM-turbulent"
     return "IOIM-laminar" if "quadratic" in core else "IOIM-linear"
@@ -253,16 +267,15 @@ def truths(errors: dict[str, float], *, alike: bool = True) -> tuple[str, ...]:
 
 
 def _own(band) -> list[tuple[tuple[str, ...], float]]:
-    """Return a band's own terms, where its structure is none of the named ones."""
-    if band.structure != "other":
-        return []
-    terms = [t.fitted for t in band.terms if t.fitted.id in _NAMES]
-    names = tuple(_NAMES[t.id] for t in terms)
-    orders = [t.shape["order"] for t in terms if "order" in t.shape]
-    exponents = [t.shape["exponent"] for t in terms if "exponent" in t.shape]
-    if any(abs(p - 1.75) > 0.25 for p in exponents) or not names:
-        return []
-    return [(names, orders[0] if orders else 1.0)]
+    """Return a band's own terms, with its order or exponent."""
+    names, order = [], 1.0
+    for term in (t.fitted for t in band.terms if t.fitted.id in _NAMES):
+        name = _NAMES[term.id]
+        if "exponent" in term.shape:
+            name = f"power{term.shape['exponent']}"
+        order = term.shape.get("order", order)
+        names.append(f"-{name}" if term.coefficient < 0.0 else name)
+    return [(tuple(names), order)] if names else []
 
 
 def _points(rng, plan: str, device) -> list[tuple[float, float]]:

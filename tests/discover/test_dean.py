@@ -82,6 +82,11 @@ def test_one_amplitude_tells_nothing_of_the_exponent():
     assert amplitude_exponent(windows_of(plan), *likelihoods(plan, -1.0)) is None
 
 
+def test_one_frequency_tells_nothing_of_the_exponent():
+    plan = [(a, 0.7) for a in np.geomspace(0.002, 0.02, 8)]
+    assert amplitude_exponent(windows_of(plan), *likelihoods(plan, -1.0)) is None
+
+
 def verdict(boundary, exponent, *, device=DEVICE, convention="paper"):
     return check_dean(device, boundary, exponent, convention=convention, criterion=100.0)
 

@@ -76,9 +76,29 @@ def test_the_smallest_of_equals_stands():
     assert found.parsimonious(np.array([3, 5, 1])) == 0
 
 
-def test_wins_are_the_share_of_redrawn_records():
-    # one fit is best on each of three records out of four: Beta(3, 1) above one half is 7/8
-    errors = np.array([[0.0, 0.0, 0.0, 1.0], [1.0, 1.0, 1.0, 0.0]])
-    wins = Predictions(errors, np.zeros(4)).wins(["a", "b"], np.random.default_rng(1))
-    assert wins["a"] == pytest.approx(7.0 / 8.0, abs=0.06)
-    assert sum(wins.values()) == pytest.approx(1.0)
+def test_fits_that_predict_alike_share_and_a_better_one_gains_with_the_records():
+    rng = np.random.default_rng(1)
+    for count, worse in ((4, 1.1), (4, 2.0), (16, 1.1)):
+        # errors that differ by one factor in every record: redrawing them changes nothing, and
+        # each record's two numbers, of unknown size, count as one power of the mean square
+        base = np.full(count, 1e-4)
+        found = Predictions(np.array([base, base * worse**2]), np.zeros(count))
+        shares = found.shares(["a", "b"], rng)
+        assert shares["b"] / shares["a"] == pytest.approx(worse ** (-2.0 * count))
+
+
+def test_records_that_err_alike_count_for_less():
+    errors = np.array([np.full(16, 1e-4), np.full(16, 1.5e-4)])
+    found = Predictions(errors, np.zeros(16))
+    alone = found.shares(["a", "b"], np.random.default_rng(0))
+    alike = found.shares(["a", "b"], np.random.default_rng(0), witnesses=1.0 / 9.0)
+    assert alone["a"] > 0.99
+    assert 0.6 < alike["a"] < 0.75
+
+
+def test_shares_follow_which_records_are_redrawn():
+    # one fit is by far the best on each of three records out of four: Beta(3, 1) above one half
+    errors = np.array([[1e-9, 1e-9, 1e-9, 1.0], [1.0, 1.0, 1.0, 1e-9]])
+    shares = Predictions(errors, np.zeros(4)).shares(["a", "b"], np.random.default_rng(1))
+    assert shares["a"] == pytest.approx(7.0 / 8.0, abs=0.1)
+    assert sum(shares.values()) == pytest.approx(1.0)
