@@ -37,7 +37,7 @@ class Bands:
     judgements: tuple[Judgement, ...]
     """Of each band."""
     exponent: AmplitudeExponent | None
-    """How the lowest boundary follows the amplitude; None where there is nothing to tell it from."""
+    """How the lowest boundary follows the amplitude; None where nothing tells."""
     frequency_advantage: float
     """Nats by which the division by frequency beats that by speed; 0 where not compared."""
     single: bool
