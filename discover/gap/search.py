@@ -19,11 +19,13 @@ from discover.naming.forces import model_force
 from discover.naming.refine import extended, refine
 from discover.naming.rows import RecordRows
 from models.constitutive import ForceModel
+from models.terms import TERMS
 
 MOST_ROUNDS = 6
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _SHAPE_DOUBT = 0.045  # of an effect's amplitude: no formula follows a measured shape closer
+_JOINT_DOUBT = 0.1  # likewise of what moves the device otherwise: contact and loss are simplified
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
 _FOLDS = 16
 _LEFT_OUT_STEPS = 3
@@ -137,11 +139,11 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     names: list[tuple[str, int]] = []
     rounds: list[Round] = []
     tried: set[str] = set()
-    explained = 0.0
+    doubt = 0.0
     while True:
         present = {t.id for t in fit.model.terms}
         open_effects = [e for e in effects if e not in present and e not in tried]
-        contest, fits = _contest(fitted, fit, open_effects, _SHAPE_DOUBT**2 * explained)
+        contest, fits = _contest(fitted, fit, open_effects, doubt)
         name = contest.ranked[0][0]
         ended = name in (AGREES, UNKNOWN) or len(rounds) >= most
         if ended or _within_doubt(rows, rounds, refitted):
@@ -150,7 +152,7 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         gained = fit.chi2 - mended.chi2
         if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
             return Search(start, refitted, tuple(rounds), contest)
-        explained += gained
+        doubt += _doubt(name) ** 2 * gained
         first = len(fit.model.terms)
         mended, dropped, names = _without_superfluous(fitted, mended, names)
         first -= len(dropped)
@@ -173,7 +175,18 @@ def _within_doubt(
     now = rounds[-1].stage
     seen = [m for r, m in zip(rows, now.misfits, strict=True) if not r.observation.held_out]
     left = _pooled(rows, now) ** 2 - pooled(seen, noise=True) ** 2
-    return left < _SHAPE_DOUBT**2 * (_pooled(rows, before) ** 2 - _pooled(rows, now) ** 2)
+    stages = [before, *(r.stage for r in rounds)]
+    tolerated = sum(
+        _doubt(r.effect) ** 2 * (_pooled(rows, was) ** 2 - _pooled(rows, r.stage) ** 2)
+        for was, r in zip(stages, rounds, strict=False)
+    )
+    return left < tolerated
+
+
+def _doubt(name: str) -> float:
+    """Return the share of an effect's amplitude by which its shape may be wrong."""
+    joint = TERMS[name].acts == "input" or name == "cavitation"
+    return _JOINT_DOUBT if joint else _SHAPE_DOUBT
 
 
 def _pooled(rows: Sequence[RecordRows], at: Stage) -> float:

@@ -73,6 +73,8 @@ class Contest:
     """Number of rows."""
     noise: float
     """Chi-square that noise explains, and the shapes of effects that were added before."""
+    tolerated: float
+    """Of it what the shapes explain."""
     starts: Mapping[str, tuple[Entry, ...]]
     """Of every effect the best of each kind of its shapes, to start a fit from."""
 
@@ -142,9 +144,14 @@ def _freed(columns: Array, tangents: Array) -> Array:
     return np.asarray(columns - (columns @ basis.T) @ basis)
 
 
-def cost(excess: float, informative: float) -> float:
-    """Return minus two times the log likelihood of a misfit above the noise."""
-    return excess if excess <= 0.0 else informative * float(np.log1p(excess / informative))
+def cost(excess: float, informative: float, tolerated: float = 0.0) -> float:
+    """Return minus two times the log likelihood of a misfit above the noise.
+
+    Up to `tolerated` below, where earlier effects' shapes may be what is left, it says nothing.
+    """
+    if excess > 0.0:
+        return informative * float(np.log1p(excess / informative))
+    return min(excess + tolerated, 0.0)
 
 
 def run_contest(
@@ -186,7 +193,8 @@ def run_contest(
     chi2 = float(target @ target)
 
     def evidence(chi2: float, parameters: int) -> float:
-        return -0.5 * cost(chi2 - noise, informative) - 0.5 * parameters * float(np.log(size))
+        misfit = cost(chi2 - noise, informative, tolerated)
+        return -0.5 * misfit - 0.5 * parameters * float(np.log(size))
 
     nothing = Entry((), (), (), chi2, evidence(chi2, 0))
     entries = [nothing]
@@ -209,7 +217,7 @@ def run_contest(
             pairs += _pairs(lead, best, chosen, spans, freed, start, evidence, informative)
     everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
     probabilities = _probabilities(everything, effects, chi2 - noise, informative)
-    return Contest(tuple(everything), probabilities, chi2 - noise, size, noise, starts)
+    return Contest(tuple(everything), probabilities, chi2 - noise, size, noise, tolerated, starts)
 
 
 def _starts(singles: Sequence[Entry]) -> dict[str, tuple[Entry, ...]]:
@@ -345,7 +353,7 @@ def reweighed(
         left = _freed(fit.residual[None], tangents)[0]
         chi2 = min(float(left @ left), e.chi2)
         spent = sum(len(v.parts) + v.shapes for v in e.variants)
-        value = -0.5 * cost(chi2 - contest.noise, informative)
+        value = -0.5 * cost(chi2 - contest.noise, informative, contest.tolerated)
         value -= 0.5 * spent * float(np.log(contest.rows))
         entries.append(replace(e, chi2=chi2, log_evidence=value))
     entries.sort(key=lambda e: -e.log_evidence)

@@ -20,7 +20,10 @@ _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle with
 _MOST_INNER = 60
 _HARDEST = 8.0
 _RIDGE = 1e-12
-_SLOW = 0.002  # of the greatest speed, over which dry friction reverses in time stepping
+_NEWTON = 2  # steps for the speed after friction
+_SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
+_REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
+_WIDE = 3.0  # ranges of reversal, beyond which friction is whole
 
 
 @dataclass(frozen=True)
@@ -48,20 +51,50 @@ class Joint:
 
 
 def device_of(force: Array, motion: Motion) -> Array:
-    """Return the device that fits a force best: mass, viscous, quadratic and dry resistance.
+    """Return the device that fits a force best: its mass and resistances, and where they reverse.
 
-    In SI units; none is negative, and all are zero for a force that is not finite.
+    Mass (kg), viscous (N s/m), quadratic (N s^2/m^2) and dry (N) resistance, and the range of
+    speed (m/s) over which the dry one reverses. None is negative; all are zero for a force that is
+    not finite.
     """
-    if not np.all(np.isfinite(force)):
-        return np.zeros(4)
     v = motion.velocity
-    columns = np.stack([motion.acceleration, v, v * np.abs(v), np.sign(v)])
-    gram = columns @ columns.T
-    scale = np.sqrt(np.diagonal(gram))
+    top = float(np.abs(v).max())
+    if not np.all(np.isfinite(force)) or top == 0.0:
+        return np.zeros(5)
+    sought = force - force.mean()
+    plain = np.stack([motion.acceleration, v, v * np.abs(v)])
+    found, left = _fitted(plain, np.tanh(v / (_REVERSALS[:, None] * top)), sought)
+    best = int(left.argmin())
+    reversal = _REVERSALS[best] * top
+    if found[best, 3] > 0.0 and 0 < best < left.size - 1:
+        before, at, after = left[best - 1 : best + 2]
+        shift = 0.5 * (before - after) / max(before - 2.0 * at + after, 1e-300)
+        reversal *= (_REVERSALS[1] / _REVERSALS[0]) ** shift
+        found, _ = _fitted(plain, np.tanh(v / reversal)[None], sought)
+        best = 0
+    return np.append(found[best], reversal)
+
+
+def _fitted(plain: Array, dry: Array, force: Array) -> tuple[Array, Array]:
+    """Return coefficients (T, 4), none negative, and misfits (T,) with each of T friction columns.
+
+    `plain` (3, N) are the columns that all have, `dry` (T, N) those of friction.
+    """
+    columns = np.concatenate([plain, dry])
+    scale = np.sqrt(np.einsum("ij,ij->i", columns, columns))
     scale = np.where(scale > 0.0, scale, 1.0)
-    factor = np.linalg.cholesky(gram / np.outer(scale, scale) + _RIDGE * np.eye(4))
-    seen = np.linalg.solve(factor, columns @ (force - force.mean()) / scale)
-    return np.asarray(nnls(factor.T, seen)[0] / scale)
+    picked = np.array([[0, 1, 2, 3 + k] for k in range(len(dry))])
+    gram = (columns @ columns.T / np.outer(scale, scale))[picked[:, :, None], picked[:, None, :]]
+    gram += _RIDGE * np.eye(4)
+    side = (columns @ force / scale)[picked]
+    found = np.linalg.solve(gram, side[..., None])[..., 0]
+    for k in np.flatnonzero(found.min(axis=1) < 0.0):
+        factor = np.linalg.cholesky(gram[k])
+        found[k] = nnls(factor.T, np.linalg.solve(factor, side[k]))[0]
+    misfit = force @ force - np.einsum(
+        "ti,ti->t", found, 2.0 * side - np.einsum("tij,tj->ti", gram, found)
+    )
+    return found / scale[picked], misfit
 
 
 def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> Array:
@@ -75,24 +108,23 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
         Of the driven end.
     joint : Joint
         What it is driven through.
-    device : ndarray, shape (4,)
+    device : ndarray, shape (5,)
         What `device_of` makes of the force.
     """
-    mass, viscous, quadratic, dry = device
+    mass, viscous, quadratic, dry, reversal = device
     if mass <= 0.0:
         return force
     v, x = motion.velocity, motion.displacement
-    top = float(np.abs(v).max())
     behind = 0.0 if joint.fluid_only else dry
     rigid = mass * motion.acceleration + viscous * v + quadratic * v * np.abs(v)
-    rigid = rigid + behind * np.clip(v / (_SLOW * top), -1.0, 1.0)
+    rigid = rigid + behind * np.tanh(v / reversal)
     natural = np.sqrt(joint.stiffness / mass)
     inner = int(np.clip(np.ceil(natural * motion.step / _STEP), 1, _MOST_INNER))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
     damping = 2.0 * joint.loss * np.sqrt(stiffness * mass)
     passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
     carried = _step(
-        x, v, motion.step, inner, mass, viscous, quadratic, behind, _SLOW * top, stiffness,
+        x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, stiffness,
         damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.hardening,
         joint.hardens, passes,
     )
@@ -109,16 +141,20 @@ def _step(
     size = x.size
     result = np.empty(size)
     position, speed, slipped = x[0], v[0], 0.0
-    stroke, pace_limit = np.max(np.abs(x)), np.max(np.abs(v))
+    pace_limit = np.max(np.abs(v))
     h = step / inner
     brake = h * dry / mass
+    rate = 0.0
+    before = np.zeros((3, 2))  # what the last cycles began with
+    known = 0  # of them
     for turn in range(passes):
         was, was_speed = position - x[0] + slipped, speed
+        deepest = 0.0
         for i in range(size):
             following = i + 1 if i + 1 < size else 0
             total = 0.0
             for k in range(inner):
-                share = (k - 0.5 * inner) / inner
+                share = (k - 0.5 * (inner - 1)) / inner
                 if share >= 0.0:
                     end = x[i] + share * (x[following] - x[i])
                     pace = v[i] + share * (v[following] - v[i])
@@ -126,12 +162,14 @@ def _step(
                     end = x[i] + share * (x[i] - x[i - 1])
                     pace = v[i] + share * (v[i] - v[i - 1])
                 depth = end - position - slipped
+                deepest = max(deepest, abs(depth))
+                now = speed + 0.5 * h * rate  # half a step on: there the place is known
                 force = 0.0
                 if depth > half:
-                    force = stiffness * (depth - half) + damping * (pace - speed)
+                    force = stiffness * (depth - half) + damping * (pace - now)
                     force = max(force, 0.0) if half > 0.0 else force
                 elif depth < -half:
-                    force = stiffness * (depth + half) + damping * (pace - speed)
+                    force = stiffness * (depth + half) + damping * (pace - now)
                     force = min(force, 0.0) if half > 0.0 else force
                 if hardening > 0.0 and (hardens == 0.0 or hardens * force > 0.0):
                     force *= 1.0 + min(abs(force) / hardening, _HARDEST)
@@ -139,15 +177,55 @@ def _step(
                     slipped += (force - min(max(force, lower), upper)) / stiffness
                 force = min(max(force, lower), upper)
                 total += force
-                speed += h * (force - (viscous + quadratic * abs(speed)) * speed) / mass
-                if abs(speed) > slow + brake:  # friction implicitly: it never overshoots
-                    speed -= brake if speed > 0.0 else -brake
-                else:
-                    speed /= 1.0 + brake / slow
+                start = speed
+                speed += h * (force - (viscous + quadratic * abs(now)) * now) / mass
+                free = speed  # friction implicitly: it never overshoots
+                if abs(free) > _WIDE * slow + brake:
+                    speed -= brake if free > 0.0 else -brake
+                elif brake > 0.0:
+                    if abs(free) > slow + brake:
+                        speed -= brake if free > 0.0 else -brake
+                    else:
+                        speed /= 1.0 + brake / slow
+                    for _ in range(_NEWTON):
+                        turned = np.tanh(speed / slow)
+                        slope = 1.0 + brake / slow * (1.0 - turned * turned)
+                        speed -= (speed + brake * turned - free) / slope
+                rate = (speed - start) / h
                 position += h * speed
             result[i] = total / inner
         moved = abs(position - x[0] + slipped - was)
-        steady = moved < _SETTLED * stroke and abs(speed - was_speed) < _SETTLED * pace_limit
+        steady = moved < _SETTLED * deepest and abs(speed - was_speed) < _SETTLED * pace_limit
         if turn > 0 and steady:
             break
+        if refilled == 0:
+            known = _begin(before, known, was, was_speed, position - x[0], speed)
+            if known == 3:
+                position, speed = before[0, 0] + x[0], before[0, 1]
+                known = 0
     return result
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _begin(
+    before: Array, known: int, place: float, speed: float, place_now: float, speed_now: float
+) -> int:
+    """Return how many cycles' beginnings are in `before`; after three, the steady one is first.
+
+    From cycle to cycle a state nearly follows a linear map, whose fixed point three steps of it
+    give by Cayley and Hamilton. Where the map does not contract the last two are kept.
+    """
+    before[known] = place, speed
+    if known < 2:
+        return known + 1
+    a, b = before[1] - before[0], before[2] - before[1]
+    c = np.array([place_now, speed_now]) - before[2]
+    area = a[0] * b[1] - a[1] * b[0]
+    if area != 0.0:  # the map takes a to b and b to c
+        trace = (a[0] * c[1] - a[1] * c[0]) / area
+        product = (b[0] * c[1] - b[1] * c[0]) / area
+        if abs(product) < 1.0 and abs(trace) < 1.0 + product:
+            before[0] = before[2] + (c - product * b) / (1.0 - trace + product)
+            return 3
+    before[0], before[1] = before[1].copy(), before[2].copy()
+    return 2
