@@ -18,7 +18,7 @@ from models.constitutive import FittedTerm, ForceModel
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill")
 _STEP = 1e-4  # of a value, for its tangent
-_JOINT_STEP = 5e-3  # likewise behind a joint, whose simulated cycle closes to a few thousandths
+_JOINT_STEP = 1e-3  # likewise behind a joint, whose simulated cycle closes to less
 _ITERATIONS = 40
 _TRIES = 6
 _DAMPING = 1e-4

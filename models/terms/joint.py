@@ -15,7 +15,7 @@ from models.motion import Motion
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
-_SETTLED = 3e-3
+_SETTLED = 5e-4
 _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle within one
 _MOST_INNER = 60
 _HARDEST = 8.0

@@ -1,0 +1,62 @@
+"""A device behind a joint, against the closed form of linear ones and limits of the others."""
+
+import numpy as np
+import pytest
+
+from models.motion import harmonic_motion
+from models.terms.joint import Joint, device_of, through_joint
+
+MASS, VISCOUS = 200.0, 900.0
+
+
+def motion(frequency, amplitude=0.008):
+    """Return one cycle with a little of the second and third harmonic."""
+    return harmonic_motion(amplitude * np.array([0.0, -1j, 0.04, 0.01]), frequency, samples=1024)
+
+
+@pytest.mark.parametrize("frequency", [0.3, 1.5, 3.0, 6.0])
+@pytest.mark.parametrize("loss", [0.02, 0.3])
+def test_a_spring_before_a_linear_device_has_its_transfer_function(frequency, loss):
+    given = motion(frequency)
+    stiffness = MASS * (2.0 * np.pi * 3.1) ** 2  # resonance among the tests
+    force = MASS * given.acceleration + VISCOUS * given.velocity
+    found = through_joint(force, given, Joint(stiffness, loss), device_of(force, given))
+    lines = np.fft.rfft(given.displacement)
+    s = 2j * np.pi * frequency * np.arange(lines.size)
+    spring = stiffness + 2.0 * loss * np.sqrt(stiffness * MASS) * s
+    device = MASS * s**2 + VISCOUS * s
+    lines[1:] *= (device * spring / (device + spring))[1:]
+    lines[0] = 0.0
+    exact = np.fft.irfft(lines, force.size)
+    assert np.std(found - exact) < 3e-4 * np.std(exact)
+
+
+@pytest.mark.parametrize("reversal", [0.03, 0.2])
+def test_a_joint_that_hardly_yields_changes_nothing_not_even_at_the_reversal_of_friction(reversal):
+    given = motion(0.4)
+    top = np.abs(given.velocity).max()
+    force = MASS * given.acceleration + VISCOUS * given.velocity
+    force = force + 100.0 * np.tanh(given.velocity / (reversal * top))
+    stiff = Joint(1e9, 0.5)
+    found = through_joint(force, given, stiff, device_of(force, given))
+    assert np.abs(found - force).max() < 0.03 * 100.0
+
+
+@pytest.mark.parametrize("reversal", [0.004, 0.02, 0.15])
+def test_the_device_that_fits_a_force_is_the_one_that_made_it(reversal):
+    given = motion(1.0)
+    v = given.velocity
+    pace = reversal * np.abs(v).max()
+    force = MASS * given.acceleration + 3e4 * v * np.abs(v) + 80.0 * np.tanh(v / pace) + 5.0
+    mass, viscous, quadratic, dry, found = device_of(force, given)
+    resistance = viscous * v + quadratic * v * np.abs(v) + dry * np.tanh(v / found)
+    made = force - MASS * given.acceleration - 5.0
+    assert mass == pytest.approx(MASS, rel=2e-3)
+    assert np.std(resistance - made) < 0.03 * np.std(made)
+    assert dry == pytest.approx(80.0, rel=0.05)
+    assert found == pytest.approx(pace, rel=0.15)
+
+
+def test_a_force_that_is_not_finite_has_no_device():
+    given = motion(1.0)
+    assert not np.any(device_of(np.full(given.time.size, np.nan), given))
