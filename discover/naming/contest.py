@@ -38,6 +38,9 @@ _UNKNOWN_LEAST = 1.0
 _UNKNOWN_SLOPE = 2.0
 _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
+_REFUTED = 40.0  # nats at most, that rows take back which an effect makes worse
+_UNSEEN = 15.0  # nats that a change over time loses where none is seen inside the records
+_SEEN = 10.0  # of chi-square, from which one is
 _UNEVEN = 5
 _REVERSALS = (0.4, 2.5)
 _NEEDS = {"stribeck-friction": "coulomb-friction"}  # a fall needs a friction to fall to
@@ -335,26 +338,47 @@ def _probabilities(
     return result
 
 
+def _over_time(rows: Sequence[RecordRows], before: Array, after: Array, effect: str) -> float:
+    """Return the nats that an effect loses by what is seen to change while the records last.
+
+    What it makes worse there refutes it, however much it explains otherwise; an effect that is a
+    change over time has to show.
+    """
+    changing = np.concatenate(
+        [np.arange(r.target.size) >= (r.steady or r.target.size) for r in rows]
+    )
+    if not changing.any():
+        return 0.0
+    gain = float(np.sum(before[changing] ** 2) - np.sum(after[changing] ** 2))
+    unseen = _UNSEEN if TERMS[effect].follows == "time" and gain < _SEEN else 0.0
+    return unseen + float(np.clip(-0.5 * gain, 0.0, _REFUTED))
+
+
 def reweighed(
     rows: Sequence[RecordRows],
     contest: Contest,
+    fit: ModelFit,
     fits: Mapping[str, ModelFit],
     effects: Sequence[str],
 ) -> Contest:
-    """Return the contest with effects weighed by fits of their real size and shape."""
+    """Return the contest with effects weighed by fits of their real size and shape.
+
+    `fit` is the model as it is, `fits` with each effect.
+    """
     informative = sum(r.informative for r in rows)
     entries = []
     for e in contest.entries:
         if len(e.effects) != 1 or e.effects[0] not in fits:
             entries.append(e)
             continue
-        fit = fits[e.effects[0]]
-        tangents = np.concatenate([fit.tangents, _reversal_doubt(rows, fit.model)])
-        left = _freed(fit.residual[None], tangents)[0]
+        found = fits[e.effects[0]]
+        tangents = np.concatenate([found.tangents, _reversal_doubt(rows, found.model)])
+        left = _freed(found.residual[None], tangents)[0]
         chi2 = min(float(left @ left), e.chi2)
         spent = sum(len(v.parts) + v.shapes for v in e.variants)
         value = -0.5 * cost(chi2 - contest.noise, informative, contest.tolerated)
         value -= 0.5 * spent * float(np.log(contest.rows))
+        value -= _over_time(rows, fit.residual, found.residual, e.effects[0])
         entries.append(replace(e, chi2=chi2, log_evidence=value))
     entries.sort(key=lambda e: -e.log_evidence)
     chances = _probabilities(entries, effects, contest.excess, informative)

@@ -76,7 +76,7 @@ def refine(
         if TERMS[name].nonnegative and found.model.terms[-1].coefficient <= 0.0:
             continue
         fits[name] = found
-    return reweighed(rows, contest, fits, effects), fits
+    return reweighed(rows, contest, fit, fits, effects), fits
 
 
 @dataclass(frozen=True)

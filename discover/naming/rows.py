@@ -44,6 +44,8 @@ class RecordRows:
     cycle_rows: Array | None = None
     """(G, R) maps a force on the cycle's grid to rows, as `project` does with the same force at
     the samples; None where there is no cycle."""
+    steady: int | None = None
+    """Number of the first rows, which a change over the record's time leaves; None: all."""
 
 
 def record_rows(
@@ -107,7 +109,7 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
 
     return RecordRows(
         observation, project(observation.measured), project, 8.0, held,
-        _cycle_rows(observation, whitened),
+        _cycle_rows(observation, whitened), 2 * count + 1,
     )
 
 
