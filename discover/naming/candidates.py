@@ -214,11 +214,18 @@ def _along(scales: Scales) -> list[Variant]:
 
 
 def _thermal(scales: Scales) -> list[Variant]:
-    return [
+    straight = [
         _one("thermal-drift", 1, warming_time=float(t), heating=heating)
         for t in (0.0, *np.geomspace(0.02, 1.0, 5) * scales.duration)
         for heating in (0.0, 1.0)
     ]
+    most = 0.5 * scales.speed**2
+    saturated = [
+        _one("thermal-drift", 2, warming_time=float(t), heating=1.0, saturation=k / (most * whole))
+        for t, whole in ((0.0, scales.duration), (0.3 * scales.duration, 1.0))
+        for k in (2.0, 8.0, 30.0)
+    ]
+    return straight + saturated
 
 
 def _drift(scales: Scales) -> list[Variant]:

@@ -8,16 +8,19 @@ from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return velocity times 1 - exp(-t/T), m/s: the change of viscous damping with time.
+    """Return velocity times w = 1 - exp(-t/T), m/s: the change of viscous damping with time.
 
-    `warming_time` 0 stands for a straight change, v t. With `heating` above 0 the change grows
-    with the record's mean square speed, in (m/s)^2, to that power: dissipation warms the oil.
+    `warming_time` 0 stands for a straight change, w = t. With `heating` above 0 w grows with the
+    record's mean square speed, in (m/s)^2, to that power: dissipation warms the oil. With
+    `saturation` s above 0 the change is w / (1 + s w): viscosity falls exponentially with
+    temperature, and with it the heat that it makes (the closed form without cooling).
     """
     elapsed = motion.time - motion.time[0]
     constant = shape["warming_time"]
     change = elapsed if constant == 0.0 else -np.expm1(-elapsed / constant)
-    warming = float(np.mean(motion.velocity**2)) ** shape["heating"]
-    return np.asarray(motion.velocity * change * warming)
+    warmed = change * float(np.mean(motion.velocity**2)) ** shape["heating"]
+    rate = shape["saturation"]
+    return np.asarray(motion.velocity * warmed / (1.0 + rate * warmed))
 
 
 TERM = Term(
@@ -28,6 +31,7 @@ TERM = Term(
     parameters=(
         Parameter("warming_time", 0.1, 1e5, 0.0, "s", "", "log"),
         Parameter("heating", 0.0, 2.0, 0.0, ""),
+        Parameter("saturation", 1e-6, 1e9, 0.0, "", "", "log"),
     ),
     mistaken_for=("sensor-gain", "viscous-damping"),
     follows="time",

@@ -20,7 +20,7 @@ SHAPES = {
     "end-stop": {"gap": 0.006, "exponent": 1.5},
     "hysteresis": {"yield_displacement": 0.002},
     "position-dependent-friction": {"power": 1.0},
-    "thermal-drift": {"warming_time": 0.3},
+    "thermal-drift": {"warming_time": 0.3, "saturation": 0.7},
     "sensor-drift": {"settling_time": 0.3},
     "sensor-clipping": {"limit": 40.0},
     "sensor-gain": {"threshold": 10.0},
