@@ -12,7 +12,7 @@ from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline, prepare_baseline
 from discover.gap.figures import added_to, curves, shape_of
 from discover.gap.result import Gap, NamedEffect, RecordGap
-from discover.gap.search import Round, Search, Stage, search
+from discover.gap.search import BEYOND_NOISE, Round, Search, Stage, search
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import Observation, observe
 from discover.naming.contest import AGREES, UNKNOWN, Contest
@@ -152,9 +152,8 @@ def _verdict(found: Search, gap: float, noise: float) -> str:
     ended = found.last.ranked[0][0]
     if not found.rounds:
         return "agrees" if ended == AGREES else "unexplained"
-    if ended == AGREES or gap <= _CLOSED * noise:
-        return "closed"
-    return "reduced"
+    closed = BEYOND_NOISE if ended == AGREES else _CLOSED
+    return "closed" if gap <= closed * noise else "reduced"
 
 
 def _stated(contest: Contest, name: str) -> tuple[tuple[str, float], ...]:
@@ -282,6 +281,14 @@ def _findings(baseline: Baseline, found: Search, text: str) -> tuple[Finding, ..
                         f" {entry.effect} and dropped.")
             )
     ended = found.last.ranked[0]
+    if found.rounds and ended[0] == AGREES and found.last.tolerated > 0.0:
+        result.append(
+            Finding(
+                "note",
+                "What is left is no more than noise and what the formulas of the added effects may"
+                " differ from the real ones by: no further effect is sought in it.",
+            )
+        )
     if ended[0] == UNKNOWN:
         chance = "over 0.99" if ended[1] > 0.99 else f"{ended[1]:.2f}"
         result.append(

@@ -22,11 +22,14 @@ from models.constitutive import ForceModel
 from models.terms import TERMS
 
 MOST_ROUNDS = 6
+BEYOND_NOISE = 1.5
+"""Gap over the noise floor, above which model and measurement do not agree."""
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _SHAPE_DOUBT = 0.045  # of an effect's amplitude: no formula follows a measured shape closer
 _JOINT_DOUBT = 0.1  # likewise of what moves the device otherwise: contact and loss are simplified
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
+_SEEN = 0.1  # of a record's mean square error, by which an effect has to lower one of them
 _FOLDS = 16
 _LEFT_OUT_STEPS = 3
 _LEFT_OUT_ENOUGH = 0.01
@@ -145,13 +148,15 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         open_effects = [e for e in effects if e not in present and e not in tried]
         contest, fits = _contest(fitted, fit, open_effects, doubt)
         name = contest.ranked[0][0]
+        if name == AGREES and not rounds and _beyond_noise(rows, now):
+            contest = contest.without(AGREES)
         ended = name in (AGREES, UNKNOWN) or len(rounds) >= most
         if ended or _within_doubt(rows, rounds, refitted):
             return Search(start, refitted, tuple(rounds), contest)
         mended = _mended(fitted, fit, contest, name, fits.get(name))
         gained = fit.chi2 - mended.chi2
         if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
-            return Search(start, refitted, tuple(rounds), contest)
+            return Search(start, refitted, tuple(rounds), _refused(rows, now, contest, name))
         doubt += _doubt(name) ** 2 * gained
         first = len(fit.model.terms)
         mended, dropped, names = _without_superfluous(fitted, mended, names)
@@ -160,7 +165,8 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         names.append((name, first))
         fit = mended
         after = stage(rows, fit)
-        if _pooled(rows, after) > _pooled(rows, now):
+        if not _closes(rows, now, after):
+            contest = _refused(rows, now, contest, name)
             return Search(start, refitted, tuple(rounds), contest, name)
         now = after
         rounds.append(Round(name, first, contest, after, dropped))
@@ -187,6 +193,30 @@ def _doubt(name: str) -> float:
     """Return the share of an effect's amplitude by which its shape may be wrong."""
     joint = TERMS[name].acts == "input" or name == "cavitation"
     return _JOINT_DOUBT if joint else _SHAPE_DOUBT
+
+
+def _beyond_noise(rows: Sequence[RecordRows], at: Stage) -> bool:
+    """Tell whether the gap is more than noise, though no line of the test shows it."""
+    seen = [m for r, m in zip(rows, at.misfits, strict=True) if not r.observation.held_out]
+    return pooled(seen) > BEYOND_NOISE * pooled(seen, noise=True)
+
+
+def _refused(rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str) -> Contest:
+    """Return the contest without an effect that does not help."""
+    rest = contest.without(name)
+    if rest.ranked[0][0] == AGREES and _beyond_noise(rows, at):
+        return rest.without(AGREES)
+    return rest
+
+
+def _closes(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
+    """Tell whether the pooled gap falls, and that of one record at least by what can be seen."""
+    falls = any(
+        a.error < (1.0 - _SEEN) * b.error
+        for r, a, b in zip(rows, after.misfits, before.misfits, strict=True)
+        if not r.observation.held_out
+    )
+    return falls and _pooled(rows, after) <= _pooled(rows, before)
 
 
 def _pooled(rows: Sequence[RecordRows], at: Stage) -> float:

@@ -86,6 +86,17 @@ class Contest:
         """Names and probabilities, most probable first."""
         return sorted(self.probabilities.items(), key=lambda item: -item[1])
 
+    def without(self, effect: str) -> Contest:
+        """Return the contest when an answer turns out not to hold.
+
+        What it had goes to "unknown", or to "agrees" where no misfit is above the noise.
+        """
+        other = UNKNOWN if self.excess > 0.0 or effect == AGREES else AGREES
+        chances = dict(self.probabilities)
+        chances[other] += chances[effect]
+        chances[effect] = 0.0
+        return replace(self, probabilities=chances)
+
     def best(self, effect: str) -> Entry | None:
         """Return the best hypothesis that adds `effect` alone."""
         return next((e for e in self.entries if e.effects == (effect,)), None)

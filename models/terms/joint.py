@@ -20,6 +20,7 @@ _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle with
 _MOST_INNER = 60
 _HARDEST = 8.0
 _RIDGE = 1e-12
+_LEAST_DRY = 1e-6  # of the force's root mean square
 _NEWTON = 2  # steps for the speed after friction
 _SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
 _REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
@@ -66,7 +67,9 @@ def device_of(force: Array, motion: Motion) -> Array:
     found, left = _fitted(plain, np.tanh(v / (_REVERSALS[:, None] * top)), sought)
     best = int(left.argmin())
     reversal = _REVERSALS[best] * top
-    if found[best, 3] > 0.0 and 0 < best < left.size - 1:
+    if found[best, 3] < _LEAST_DRY * float(np.sqrt(np.mean(sought**2))):
+        return np.append(found[0, :3], (0.0, _REVERSALS[0] * top))
+    if 0 < best < left.size - 1:
         before, at, after = left[best - 1 : best + 2]
         shift = 0.5 * (before - after) / max(before - 2.0 * at + after, 1e-300)
         reversal *= (_REVERSALS[1] / _REVERSALS[0]) ** shift
