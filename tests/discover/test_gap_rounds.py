@@ -41,3 +41,44 @@ def test_a_force_that_is_no_entry_is_not_named_for_sure():
 
     found = close_gap(campaign(law), "fit:inertia,viscous-damping")
     assert not found.rounds or found.rounds[0].probability < 0.9
+
+
+def test_friction_that_differs_from_test_to_test_is_no_warming():
+    """Its size follows the stroke, so some drift would explain it: but nothing changes in time."""
+
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 30.0 * (np.abs(x).max() / 0.004) ** 1.5 * np.sign(v)
+
+    found = close_gap(
+        campaign(law), "fit:inertia,viscous-damping", effects=("thermal-drift", "sensor-drift")
+    )
+    assert found.verdict == "unexplained"
+    assert found.rounds == ()
+
+
+def test_warming_that_shows_inside_the_tests_is_named():
+    """The oil warms by what it dissipates and thins exponentially: no cooling, stepped in time."""
+
+    def law(t, x, v, a):
+        warm, force = 0.0, np.empty_like(t)
+        for i, (speed, pull) in enumerate(zip(v, 120.0 * a, strict=True)):
+            damping = 800.0 * np.exp(-warm)
+            force[i] = pull + damping * speed
+            warm += 0.05 * damping * speed**2 * (t[1] - t[0])
+        return force
+
+    found = close_gap(campaign(law), "fit:inertia,viscous-damping")
+    assert found.rounds[0].effect == "thermal-drift"
+    assert found.rounds[0].probability > 0.9
+    assert found.final_held_out_gap_percent < 1.3 * found.noise_percent
+
+
+def test_a_force_at_half_the_test_s_frequency_is_not_taken_for_drift_nor_for_noise():
+    def law(t, x, v, a):
+        rate = t[1] - t[0]
+        frequency = 1.0 / (250.0 * rate) ** 0.5
+        return device(t, x, v, a) + 6.0 * np.cos(np.pi * frequency * t)
+
+    found = close_gap(campaign(law), "fit:inertia,viscous-damping")
+    assert found.verdict == "unexplained"
+    assert found.last[0][0] == "unknown"
