@@ -5,6 +5,7 @@ is driven through the joint and stepped in time to its steady state.
 """
 
 from dataclasses import dataclass
+from weakref import ReferenceType, ref
 
 import numpy as np
 from numba import njit
@@ -17,7 +18,8 @@ _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
 _SETTLED = 5e-4
 _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle within one
-_MOST_INNER = 60
+_LEAST_INNER, _MOST_INNER = 4, 60
+_MOST_STEPS = 1_000_000  # of one pass: a stiffer joint than they follow counts as rigid
 _HARDEST = 8.0
 _RIDGE = 1e-12
 _LEAST_DRY = 1e-6  # of the force's root mean square
@@ -53,6 +55,21 @@ class Joint:
     """True where dry friction is beside the joint and not behind it."""
 
 
+class _Last:
+    """What was last asked for: the same device is tried behind many joints."""
+
+    force: ReferenceType[Array] | None = None
+    motion: ReferenceType[Motion] | None = None
+    device = np.zeros(5)
+
+    @classmethod
+    def known(cls, force: Array, motion: Motion) -> bool:
+        """Tell whether the last answer is that for these very objects."""
+        if cls.force is None or cls.motion is None:
+            return False
+        return cls.force() is force and cls.motion() is motion
+
+
 def device_of(force: Array, motion: Motion) -> Array:
     """Return the device that fits a force best: its mass and resistances, and where they reverse.
 
@@ -60,6 +77,13 @@ def device_of(force: Array, motion: Motion) -> Array:
     speed (m/s) over which the dry one reverses. None is negative; all are zero for a force that is
     not finite.
     """
+    if not _Last.known(force, motion):
+        _Last.device = _device(force, motion)
+        _Last.force, _Last.motion = ref(force), ref(motion)
+    return _Last.device
+
+
+def _device(force: Array, motion: Motion) -> Array:
     v = motion.velocity
     top = float(np.abs(v).max())
     if not np.all(np.isfinite(force)) or top == 0.0:
@@ -124,7 +148,8 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     rigid = mass * motion.acceleration + viscous * v + quadratic * v * np.abs(v)
     rigid = rigid + behind * np.tanh(v / reversal)
     natural = np.sqrt(joint.stiffness / mass)
-    inner = int(np.clip(np.ceil(natural * motion.step / _STEP), 1, _MOST_INNER))
+    most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
+    inner = int(np.clip(np.ceil(natural * motion.step / _STEP), 1, most))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
     damping = 2.0 * joint.loss * np.sqrt(stiffness * mass)
     passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
