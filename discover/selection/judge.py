@@ -240,13 +240,13 @@ def _predictive(
     for name in dict.fromkeys(names[i] for i in near):
         own = [i for i in near if names[i] == name]
         standing[name] = own[predictions.only(own).parsimonious(parameters[own])]
-    wins = predictions.only(list(standing.values())).shares(
+    shares = predictions.only(list(standing.values())).shares(
         list(standing),
         np.random.default_rng(seed),
         witnesses=witnesses_of(windows, fits[smallest], coordinate),
     )
     mixed = {
-        name: share * result.probabilities.get(name, 0.0) + (1.0 - share) * wins.get(name, 0.0)
+        name: share * result.probabilities.get(name, 0.0) + (1.0 - share) * shares.get(name, 0.0)
         for name in STRUCTURES
     }
     leading = max(mixed, key=lambda name: mixed[name])
