@@ -12,7 +12,7 @@ from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline, prepare_baseline
 from discover.gap.figures import added_to, curves, shape_of
 from discover.gap.result import Gap, NamedEffect, RecordGap
-from discover.gap.search import BEYOND_NOISE, Round, Search, Stage, search
+from discover.gap.search import Round, Search, Stage, search
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import Observation, observe
 from discover.naming.contest import AGREES, UNKNOWN, Contest
@@ -28,6 +28,7 @@ _LEAST_STATED = 0.02
 _MOST_STATED = 6
 _EQUAL = 0.2  # of the named effect's probability: then they can't be told apart
 _CLOSED = 1.15  # of the noise floor
+_CLOSED_BY_SHAPES = 1.5  # likewise where nothing but the shapes' own error is left
 
 
 def close_gap(
@@ -152,7 +153,7 @@ def _verdict(found: Search, gap: float, noise: float) -> str:
     ended = found.last.ranked[0][0]
     if not found.rounds:
         return "agrees" if ended == AGREES else "unexplained"
-    closed = BEYOND_NOISE if ended == AGREES else _CLOSED
+    closed = _CLOSED_BY_SHAPES if ended == AGREES else _CLOSED
     return "closed" if gap <= closed * noise else "reduced"
 
 

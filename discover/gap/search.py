@@ -22,8 +22,6 @@ from models.constitutive import ForceModel
 from models.terms import TERMS
 
 MOST_ROUNDS = 6
-BEYOND_NOISE = 1.5
-"""Gap over the noise floor, above which model and measurement do not agree."""
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _SHAPE_DOUBT = 0.045  # of an effect's amplitude: no formula follows a measured shape closer
@@ -148,15 +146,13 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         open_effects = [e for e in effects if e not in present and e not in tried]
         contest, fits = _contest(fitted, fit, open_effects, doubt)
         name = contest.ranked[0][0]
-        if name == AGREES and not rounds and _beyond_noise(rows, now):
-            contest = contest.without(AGREES)
         ended = name in (AGREES, UNKNOWN) or len(rounds) >= most
         if ended or _within_doubt(rows, rounds, refitted):
             return Search(start, refitted, tuple(rounds), contest)
         mended = _mended(fitted, fit, contest, name, fits.get(name))
         gained = fit.chi2 - mended.chi2
         if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
-            return Search(start, refitted, tuple(rounds), _refused(rows, now, contest, name))
+            return Search(start, refitted, tuple(rounds), contest.without(name))
         doubt += _doubt(name) ** 2 * gained
         first = len(fit.model.terms)
         mended, dropped, names = _without_superfluous(fitted, mended, names)
@@ -166,8 +162,7 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         fit = mended
         after = stage(rows, fit)
         if not _closes(rows, now, after):
-            contest = _refused(rows, now, contest, name)
-            return Search(start, refitted, tuple(rounds), contest, name)
+            return Search(start, refitted, tuple(rounds), contest.without(name), name)
         now = after
         rounds.append(Round(name, first, contest, after, dropped))
 
@@ -193,20 +188,6 @@ def _doubt(name: str) -> float:
     """Return the share of an effect's amplitude by which its shape may be wrong."""
     joint = TERMS[name].acts == "input" or name == "cavitation"
     return _JOINT_DOUBT if joint else _SHAPE_DOUBT
-
-
-def _beyond_noise(rows: Sequence[RecordRows], at: Stage) -> bool:
-    """Tell whether the gap is more than noise, though no line of the test shows it."""
-    seen = [m for r, m in zip(rows, at.misfits, strict=True) if not r.observation.held_out]
-    return pooled(seen) > BEYOND_NOISE * pooled(seen, noise=True)
-
-
-def _refused(rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str) -> Contest:
-    """Return the contest without an effect that does not help."""
-    rest = contest.without(name)
-    if rest.ranked[0][0] == AGREES and _beyond_noise(rows, at):
-        return rest.without(AGREES)
-    return rest
 
 
 def _closes(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:

@@ -38,6 +38,7 @@ _UNKNOWN_LEAST = 1.0
 _UNKNOWN_SLOPE = 2.0
 _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
+_AN_ANSWER = 0.05
 _REFUTED = 40.0  # nats at most, that rows take back which an effect makes worse
 _UNSEEN = 15.0  # nats that a change over time loses where none is seen inside the records
 _SEEN = 10.0  # of chi-square, from which one is
@@ -87,12 +88,12 @@ class Contest:
         return sorted(self.probabilities.items(), key=lambda item: -item[1])
 
     def without(self, effect: str) -> Contest:
-        """Return the contest when an answer turns out not to hold.
+        """Return the contest when adding an effect turns out not to help.
 
-        What it had goes to "unknown", or to "agrees" where no misfit is above the noise.
+        What it had goes to "unknown", or to "agrees" where that was an answer.
         """
-        other = UNKNOWN if self.excess > 0.0 or effect == AGREES else AGREES
         chances = dict(self.probabilities)
+        other = AGREES if self.excess <= 0.0 and chances[AGREES] > _AN_ANSWER else UNKNOWN
         chances[other] += chances[effect]
         chances[effect] = 0.0
         return replace(self, probabilities=chances)

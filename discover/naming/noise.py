@@ -15,6 +15,7 @@ _BINS = 48
 _SLOPE_FROM = 8
 _STEEPEST = 2.0
 _CLEAR = 1.6
+_LEAST_LEFT = 0.2
 _REVERSALS = (0.01, 0.03, 0.1)
 
 
@@ -61,6 +62,8 @@ def noise_density(observation: Observation, slow: int) -> tuple[Array, Array]:
     clear = np.flatnonzero((distance > _CLEAR) & (frequencies > 1.5 * width))
     if clear.size < 2 * _FEWEST_BINS:
         clear = np.arange(2, frequencies.size)
+        cycles = frequency / width  # of so many bins a harmonic, the fit has emptied one
+        density = density / max(1.0 - 1.0 / cycles, _LEAST_LEFT)
     clear = clear[frequencies[clear] < (count + 0.5) * frequency]
     edges = np.geomspace(frequencies[clear[0]], frequencies[clear[-1]] * 1.001, _BINS + 1)
     middle, level, start = [], [], 0

@@ -99,7 +99,7 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
         variance = size * (window.variance + _TOLERANCE**2 * window.power)[order]
     variance[2 * count + 1 :] *= _SLOW_DOUBT
     variance[0] *= _SLOW_DOUBT
-    hum = _hum(order * frequency, 2.0 / duration)
+    hum = _hum(order * frequency, 2.0 / duration, (size - 1) / duration)
     variance[np.logical_and(hum, order > 2)] *= 1e4
     scale = 1.0 / np.sqrt(variance)
     whitened = basis * scale
@@ -133,8 +133,9 @@ def _cycle_rows(observation: Observation, whitened: Array) -> Array | None:
     return np.asarray(between @ whitened)
 
 
-def _hum(frequencies: Array, width: float) -> Array:
-    """Return which lines lie on a low multiple of the mains."""
+def _hum(frequencies: Array, width: float, rate: float) -> Array:
+    """Return which lines lie on a low multiple of the mains, folded at the sampling rate."""
     multiples = np.array([m * k for m in _MAINS for k in (1, 2, 3)])
+    multiples = np.abs(multiples - rate * np.round(multiples / rate))
     distance = np.abs(frequencies[:, None] - multiples)
     return np.asarray(np.any(distance < width, axis=1))
