@@ -61,6 +61,21 @@ class NamedEffect:
 
 
 @dataclass(frozen=True)
+class MendedTerm:
+    """A term of the mended model."""
+
+    fitted: FittedTerm
+    """Coefficient and shape."""
+    interval: Interval | None
+    """95 %, of the coefficient; None where it was held."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        interval = {} if self.interval is None else {"interval": list(self.interval)}
+        return {**self.fitted.to_dict(), **interval}
+
+
+@dataclass(frozen=True)
 class RecordGap:
     """One record before and after."""
 
@@ -114,6 +129,8 @@ class Gap:
     """In a sentence."""
     rounds: tuple[NamedEffect, ...]
     """In order."""
+    mended: tuple[MendedTerm, ...]
+    """The baseline's terms and the added ones, as last fitted."""
     records: tuple[RecordGap, ...]
     """In the campaign's order."""
     verdict: str
@@ -160,6 +177,7 @@ class Gap:
             "where": [p.to_dict() for p in self.where],
             "where_text": self.where_text,
             "rounds": [r.to_dict() for r in self.rounds],
+            "mended": [t.to_dict() for t in self.mended],
             "records": [r.to_dict() for r in self.records],
             "verdict": self.verdict,
             "final_gap_percent": self.final_gap_percent,

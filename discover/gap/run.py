@@ -11,12 +11,13 @@ from discover.figure_data import GapFigureData
 from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline, prepare_baseline
 from discover.gap.figures import added_to, curves, shape_of
-from discover.gap.result import Gap, NamedEffect, RecordGap
+from discover.gap.leftover import leftover_in_words
+from discover.gap.result import Gap, MendedTerm, NamedEffect, RecordGap
 from discover.gap.search import Round, Search, Stage, search
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import Observation, observe
 from discover.naming.contest import AGREES, UNKNOWN, Contest
-from discover.naming.fit import whole_model
+from discover.naming.fit import ModelFit, whole_model
 from discover.naming.forces import model_force
 from discover.records import Campaign, Finding
 from models.checks import InputError, one_of
@@ -114,7 +115,10 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
     final_gap = _seen(baseline, final)
     verdict = _verdict(found, final_gap, noise)
     unexplained = float(np.sqrt(max(final_gap**2 - noise**2, 0.0)))
-    shape = "" if verdict in ("agrees", "closed") else where_in_words(left).rstrip(".")
+    shape = ""
+    if verdict not in ("agrees", "closed"):
+        told = (where_in_words(left).rstrip("."), leftover_in_words(rows, left, final.fit.model))
+        shape = "; ".join(t for t in told if t)
     records = tuple(
         RecordGap(
             r.observation.file, r.observation.held_out, now.noise_percent, was.percent, now.percent
@@ -134,6 +138,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         where=located,
         where_text=where_in_words(located),
         rounds=rounds,
+        mended=_mended_terms(baseline, found.final.fit),
         records=records,
         verdict=verdict,
         final_gap_percent=final_gap,
@@ -175,7 +180,7 @@ def _named(baseline: Baseline, entry: Round, before: Stage, after: Stage) -> Nam
     fit = entry.stage.fit
     index = min(entry.first, len(fit.model.terms) - 1)
     term = fit.model.terms[index]
-    error = _standard_error(entry)
+    error = _standard_errors(fit).get(index, 0.0)
     probability = float(entry.contest.probabilities[entry.effect])
     alternatives = _stated(entry.contest, entry.effect)
     return NamedEffect(
@@ -195,14 +200,24 @@ def _named(baseline: Baseline, entry: Round, before: Stage, after: Stage) -> Nam
     )
 
 
-def _standard_error(entry: Round) -> float:
-    """Return the coefficient's standard error, N per unit, raised where more than noise is left."""
-    fit = entry.stage.fit
-    for k, parameter in enumerate(fit.parameters):
-        if parameter.term == entry.first and parameter.shape is None:
-            raised = max(fit.chi2 / max(fit.residual.size - len(fit.parameters), 1), 1.0)
-            return float(np.sqrt(max(fit.covariance[k, k], 0.0) * raised))
-    return 0.0
+def _standard_errors(fit: ModelFit) -> dict[int, float]:
+    """Return each fitted coefficient's standard error, raised where more than noise is left."""
+    raised = max(fit.chi2 / max(fit.residual.size - len(fit.parameters), 1), 1.0)
+    return {
+        parameter.term: float(np.sqrt(max(fit.covariance[k, k], 0.0) * raised))
+        for k, parameter in enumerate(fit.parameters)
+        if parameter.shape is None
+    }
+
+
+def _mended_terms(baseline: Baseline, fit: ModelFit) -> tuple[MendedTerm, ...]:
+    errors = _standard_errors(fit)
+    result = [MendedTerm(t, None) for t in (baseline.terms if baseline.fixed else ())]
+    for index, term in enumerate(fit.model.terms):
+        half = 1.96 * errors.get(index, 0.0)
+        interval = (term.coefficient - half, term.coefficient + half) if index in errors else None
+        result.append(MendedTerm(term, interval))
+    return tuple(result)
 
 
 def _mended(campaign: Campaign, baseline: Baseline, found: Search) -> SegmentedModel:

@@ -200,7 +200,8 @@ def where_in_words(found: Sequence[Place]) -> str:
     value /= max(float(weights.sum()), 1e-300)
     near = float(weights @ np.array([p.reversal for p in above]) / max(weights.sum(), 1e-300))
     return (
-        f"The misfit stands above the noise in {len(above)} of {len(found)} records, most in"
-        f" {greatest.record} ({100.0 * greatest.share:.0f} %); {100.0 * value:.0f} % of it follows"
-        f" {name}, and {100.0 * near:.0f} % lies within 5 % of the stroke around reversal."
+        f"The misfit stands above the noise in {len(above)} of {len(found)} records,"
+        f" {100.0 * greatest.share:.0f} % of its energy in {greatest.record};"
+        f" {100.0 * value:.0f} % of it follows {name}, and {100.0 * near:.0f} % lies within 5 % of"
+        " the stroke around reversal."
     )

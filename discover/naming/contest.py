@@ -202,6 +202,8 @@ def run_contest(
     noise = dof + _NOISE_DEVIATIONS * np.sqrt(2.0 * dof) * 0.5 + _NOISE_UNCERTAINTY * dof
     noise += tolerated
     raw = candidate_columns(rows, fit.model, chosen)
+    with np.errstate(over="ignore", invalid="ignore"):
+        raw[~np.isfinite(np.sum(raw**2, axis=1))] = 0.0  # overflows: no candidate
     tangents = np.concatenate([fit.tangents, _reversal_doubt(rows, fit.model)])
     freed = _freed(raw, tangents)
     target = _freed(fit.residual[None], tangents)[0]

@@ -138,7 +138,8 @@ def _about_nuisance(nuisance: Nuisance) -> Finding:
         text = (
             f"The force channel runs {1e3 * nuisance.value:.3g} ms behind the displacement"
             f" ({1e3 * nuisance.interval[0]:.3g} to {1e3 * nuisance.interval[1]:.3g} ms);"
-            " coefficients are corrected for it."
+            " coefficients and errors stated here are corrected for it. model.json is the device"
+            " without it: `gap --model` and `simulate` meet the records' delay anew."
         )
     else:
         text = (

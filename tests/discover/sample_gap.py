@@ -77,6 +77,11 @@ def sample_gap_document():
             {"record": r.file, "share": 0.25, "profile": "direction of motion"}
             for r in data.records
         ],
+        "mended": [
+            {**term, "coefficient": 371.4, "interval": [370.0, 372.8]},
+            {"id": "coulomb-friction", "coefficient": 401.0, "unit": "N",
+             "interval": [396.0, 406.0]},
+        ],
         "rounds": [
             {
                 "effect": "coulomb-friction",

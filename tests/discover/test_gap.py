@@ -46,6 +46,15 @@ def test_an_offset_is_named_with_its_size_and_closes_the_gap(offset):
     assert offset.held_out_gap_percent > 2.0 * offset.final_held_out_gap_percent
 
 
+def test_the_mended_model_has_every_coefficient_with_an_interval_that_holds_it(offset):
+    true = {"inertia": 120.0, "viscous-damping": 800.0, "force-offset": 25.0}
+    assert {t.fitted.id for t in offset.mended} == set(true)
+    for term in offset.mended:
+        low, high = term.interval
+        assert low - 0.5 * (high - low) < true[term.fitted.id] < high + 0.5 * (high - low)
+        assert high - low < 0.05 * true[term.fitted.id]
+
+
 def test_the_documents_hold_what_was_promised(offset):
     document = offset.to_dict()
     assert set(document) >= KEYS

@@ -19,6 +19,8 @@ def test_page_is_self_contained_and_carries_each_part():
         "Round 1: Coulomb friction",
         "Round 2: force offset",
         "Record by record",
+        "The mended model",
+        "396 to 406",
         "Where the baseline misses",
         "The effect's shape",
         "395 to 409",
