@@ -10,11 +10,13 @@ from discover.data_check.figures import plan_figure_data
 from discover.data_check.plan import plan_rows
 from discover.data_check.result import AddedTest, Conditioning, DataCheck, Inseparable, Pair
 from discover.data_check.separation import expected_pairs, inseparable_pairs
+from discover.data_check.sizes import size_findings
 from discover.record_checks import RecordCheck, check_records
 from discover.records import Campaign, Finding
 from discover.study.options import StudyOptions
 from discover.study.preparation import Prepared, prepare
 
+_LEVELS = ("error", "warning", "note")
 _SAME = 0.05  # relative difference below which two amplitudes are one
 
 
@@ -39,7 +41,8 @@ def check_campaign(campaign: Campaign, options: StudyOptions | None = None) -> D
     """
     chosen = options or StudyOptions()
     judged = check_records(campaign)
-    findings = (*judged.findings, *_plan_findings(judged.records))
+    found = [*size_findings(campaign, judged.records), *_plan_findings(judged.records)]
+    findings = tuple(sorted((*judged.findings, *found), key=lambda f: _LEVELS.index(f.level)))
     prepared: Prepared | None = None
     structures: tuple[Conditioning, ...] = ()
     pairs: tuple[Pair, ...] = ()

@@ -151,7 +151,7 @@ class DataCheck:
     records: tuple[RecordCheck, ...]
     """In the campaign's order."""
     findings: tuple[Finding, ...]
-    """On the records and on the plan, in words."""
+    """On the records and on the plan, in words; errors first."""
     structures: tuple[Conditioning, ...]
     """What the tests determine of each; none where no record may be fitted."""
     pairs: tuple[Pair, ...]
