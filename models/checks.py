@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Iterable
 from typing import Any
@@ -126,6 +127,18 @@ def finite_array(
     return result
 
 
+def nearest(text: str, choices: Iterable[str]) -> str:
+    """Return " (did you mean 'x'?)" for a near name, else an empty string.
+
+    Examples
+    --------
+    >>> nearest("frequncy", ["frequency", "file"])
+    " (did you mean 'frequency'?)"
+    """
+    close = difflib.get_close_matches(text.lower(), list(choices), n=1, cutoff=0.7)
+    return f" (did you mean {close[0]!r}?)" if close else ""
+
+
 def one_of(name: str, value: str, choices: Iterable[str], *, where: str = "") -> str:
     """Return `value` if it is one of `choices`, or raise `InputError` that lists them.
 
@@ -136,7 +149,8 @@ def one_of(name: str, value: str, choices: Iterable[str], *, where: str = "") ->
     """
     listed = tuple(choices)
     if value not in listed:
+        near = nearest(value, listed) if isinstance(value, str) else ""  # a user's file may err
         raise InputError(
-            name, expected="one of " + ", ".join(listed), found=repr(value), where=where
+            name, expected="one of " + ", ".join(listed), found=repr(value) + near, where=where
         )
     return value

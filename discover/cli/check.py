@@ -11,6 +11,7 @@ import typer
 from discover.cli import options
 from discover.cli.invocation import Invocation
 from discover.cli.results import deliver, result_folder, working
+from discover.cli.shipped import shipped_campaign
 
 FAILED = 1
 
@@ -18,8 +19,13 @@ FAILED = 1
 def check(
     context: typer.Context,
     campaign: Annotated[
-        Path, typer.Argument(metavar="CAMPAIGN", help="Folder with campaign.toml and its records.")
-    ],
+        Path | None,
+        typer.Argument(
+            metavar="[CAMPAIGN]",
+            help="Folder with campaign.toml and its records [default: the shipped one].",
+            show_default=False,
+        ),
+    ] = None,
     out: options.Out = None,
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
@@ -29,19 +35,20 @@ def check(
 
     Exits 1 where a finding is an error: the campaign should not be studied as it is.
     """
-    folder = result_folder("check", campaign, out)
+    source = shipped_campaign() if campaign is None else campaign
+    folder = result_folder("check", source, out)
 
     from discover.data_check import check_campaign
     from discover.readers import read_campaign
     from discover.report.check import check_figures, check_lines, check_report
     from discover.study import StudyOptions
 
-    with working(f"Checking {campaign}"):
-        answer = check_campaign(read_campaign(campaign), StudyOptions(seed=seed, jobs=jobs))
+    with working(f"Checking {source}"):
+        answer = check_campaign(read_campaign(source), StudyOptions(seed=seed, jobs=jobs))
     with working("Drawing"):
         document = answer.to_dict()
         figures = check_figures(document, answer.figure_data)
-        typed = shlex.quote(str(campaign))
+        typed = shlex.quote(str(source))
         invocation: Invocation = context.obj
         page = check_report(
             document,

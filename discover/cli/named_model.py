@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from models.checks import InputError
+from models.checks import InputError, nearest
 from models.constitutive import (
     Band,
     ForceModel,
@@ -113,13 +113,13 @@ def _from_file(name: str, *, where: str) -> SegmentedModel:
         raise InputError(
             "model",
             expected="one of " + ", ".join(NAMES) + ", or a model.json",
-            found=name,
+            found=name + nearest(name, NAMES),
             where=where,
         )
     try:
         table = json.loads(path.read_text(encoding="utf-8"))
     except (UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise InputError("model", expected="JSON", found=str(error), where=name) from None
+        raise InputError("not valid JSON", found=str(error), where=name) from None
     if not isinstance(table, dict):
         raise InputError("model", expected="a JSON object", found=type(table).__name__, where=name)
     return SegmentedModel.from_dict(table, where=name)

@@ -59,13 +59,28 @@ def synth(
     held_out: Annotated[
         int, typer.Option("--held-out", min=0, help="How many records are marked as held out.")
     ] = 0,
-    effect_files: options.EffectFiles = None,
+    effect_files: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--effect-file",
+            metavar="FILE.py",
+            help="An effect of your own that the model.json of --model names; --hide knows only"
+            " the rig's effects. May be given again.",
+        ),
+    ] = None,
     title: Annotated[str | None, typer.Option("--title", help="Of the campaign.")] = None,
     seed: options.Seed = options.DEFAULT_SEED,
 ) -> int:
     """Write a campaign of sine tests from the virtual test rig, or from a model with --model."""
     if model is not None and hide:
         raise InputError("--hide", expected="used with the rig", found="--model", where="synth")
+    if model is None and effect_files:
+        raise InputError(
+            "--effect-file",
+            expected="used with --model (--hide knows only the rig's effects)",
+            found="no --model",
+            where="synth",
+        )
     share = fraction(noise, where="--noise")
     sizes = dict(_hidden(item) for item in hide or ())
     grid_hz = options.grid(frequencies, where="--frequencies")

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from discover.readers.binary_table import open_mat, open_npz, open_parquet
-from discover.readers.columns import nearest
 from discover.readers.record import Entry, read_record
 from discover.readers.source import Source
 from discover.readers.tables import (
@@ -22,7 +21,7 @@ from discover.readers.tables import (
 )
 from discover.readers.text_table import open_text
 from discover.records import Campaign, Finding, Record
-from models.checks import InputError
+from models.checks import InputError, nearest
 
 CAMPAIGN_FILE = "campaign.toml"
 _TABLES = ("title", "device", "columns", "units", "records", "rig", "system")
@@ -104,7 +103,7 @@ def _parse(content: bytes) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise InputError(CAMPAIGN_FILE, expected="in UTF-8", found=error.reason) from None
     except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(CAMPAIGN_FILE, expected="valid TOML", found=str(error)) from None
+        raise InputError(f"{CAMPAIGN_FILE} is not valid TOML", found=str(error)) from None
 
 
 def _check_keys(table: Mapping[str, Any]) -> None:

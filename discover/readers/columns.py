@@ -43,18 +43,6 @@ class Columns:
     """Headers that are nearly a quantity's name but not read, with that name."""
 
 
-def nearest(text: str, choices: Iterable[str]) -> str:
-    """Return ", did you mean 'x'?" for a near name, else an empty string.
-
-    Examples
-    --------
-    >>> nearest("frequncy", ["frequency", "file"])
-    " (did you mean 'frequency'?)"
-    """
-    close = difflib.get_close_matches(text.lower(), list(choices), n=1, cutoff=0.7)
-    return f" (did you mean {close[0]!r}?)" if close else ""
-
-
 def _split(header: str) -> tuple[str, str | None]:
     """Return a header's name and unit, as in ``force [kN]`` or ``force (kN)``."""
     match = _HEADER.fullmatch(header)

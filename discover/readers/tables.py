@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from discover.readers.columns import QUANTITIES, nearest
+from discover.readers.columns import QUANTITIES
 from discover.readers.record import Entry
 from discover.readers.units import check_unit, quantity
 from discover.records import CarriedSystem, RigLimits
-from models.checks import InputError, number, one_of
+from models.checks import InputError, nearest, number, one_of
 from models.device import Device
 
 _FILE = "campaign.toml"

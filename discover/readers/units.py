@@ -115,15 +115,13 @@ def check_unit(text: object, kind: str, *, name: str, where: str) -> str:
     >>> check_unit("kN", "force", name="force", where="campaign.toml")
     'kN'
     """
-    expected = f"a unit of {kind} such as {SI_UNITS[kind]!r}"
+    expected = f"in a unit of {kind} such as {SI_UNITS[kind]!r}"
     if not isinstance(text, str):
-        raise InputError(f"unit of {name}", expected=expected, found=repr(text), where=where)
+        raise InputError(name, expected=expected, found=repr(text), where=where)
     try:
         _conversion(text, kind)
     except ValueError as error:
-        raise InputError(
-            f"unit of {name}", expected=expected, found=str(error), where=where
-        ) from None
+        raise InputError(name, expected=expected, found=str(error), where=where) from None
     return text
 
 

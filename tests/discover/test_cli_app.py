@@ -38,6 +38,18 @@ def test_every_verb_is_listed_with_what_it_does(capsys):
         (["synth", "out", "--device", "device-11"], "campaign's folder, got device-11"),
         (["synth", "out", "--device", "device-12", "--hide", "stiffness"], "EFFECT=SIZE"),
         (["synth", "out", "--device", "device-12", "--noise", "much"], "--noise"),
+        (
+            ["synth", "out", "--device", "device-12", "--hide", "x=5%", "--effect-file", "x.py"],
+            "--effect-file must be used with --model (--hide knows only the rig's effects)",
+        ),
+        (
+            ["synth", "out", "--device", "device-12", "--hide", "coulmb-friction=5%"],
+            "got 'coulmb-friction' (did you mean 'coulomb-friction'?)",
+        ),
+        (
+            ["synth", "out", "--device", "device-12", "--model", "ioim-laminer"],
+            "got ioim-laminer (did you mean 'ioim-laminar'?)",
+        ),
         (["synth", "out", "--device", "device-12", "--model", "none.json"], "or a model.json"),
         (["synth", "out", "--device", "device-10", "--model", "sfoim"], "got device-10"),
     ],
@@ -53,6 +65,13 @@ def test_bad_input_is_one_line_on_stderr_and_exits_2(
     assert err.startswith("inerter: ")
     assert err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_model_that_is_no_json_says_so(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "model.json").write_text("{")
+    assert main(["synth", "out", "--device", "device-12", "--model", "model.json"]) == 2
+    assert capsys.readouterr().err.startswith("inerter: model.json: not valid JSON: Expecting")
 
 
 def test_an_interrupt_exits_130(capsys, monkeypatch):

@@ -74,6 +74,8 @@ def test_an_unknown_term_is_named_with_those_that_there_are(campaign, here, caps
     assert main(["discover", str(campaign), "--terms", "inertia,drag"]) == 2
     assert "'drag'" in (err := capsys.readouterr().err)
     assert "viscous-damping" in err
+    assert main(["discover", str(campaign), "--terms", "inertia,viscous-dampin"]) == 2
+    assert "got 'viscous-dampin' (did you mean 'viscous-damping'?)" in capsys.readouterr().err
     assert not (here / "inerter-out").exists()
 
 
@@ -113,6 +115,15 @@ def test_check_writes_its_report_and_pictures_and_says_what_comes_next(campaign,
         "IOIM-turbulent",
     ]
     assert len(document["pairs"]) == 6
+
+
+def test_check_without_a_campaign_takes_the_shipped_one_as_discover_does(
+    campaign, here, capsys, monkeypatch
+):
+    monkeypatch.setattr("discover.cli.check.shipped_campaign", lambda: campaign)
+    assert main(["check"]) == 0
+    assert f"`inerter discover {campaign}`" in capsys.readouterr().out
+    assert (here / "inerter-out" / "check-laminar" / "check.json").is_file()
 
 
 def test_check_fails_where_the_force_has_the_wrong_sign(campaign, here, capsys):

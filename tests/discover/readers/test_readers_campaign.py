@@ -117,7 +117,7 @@ def test_hash_depends_on_the_bytes_and_not_on_the_place(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("toml", "message"),
     [
-        ("[[records]\n", r"campaign.toml must be valid TOML, got .*line 1"),
+        ("[[records]\n", r"campaign.toml is not valid TOML: Expected .*line 1"),
         ('title = "\xb5"'.encode("latin-1"), "campaign.toml must be in UTF-8"),
         ("title = 3\n" + ONE, "campaign.toml: title must be text, got 3"),
         ('titel = "x"\n' + ONE, r"key 'titel' must be one of title, .* \(did you mean 'title'\?\)"),
@@ -160,8 +160,9 @@ def test_hash_depends_on_the_bytes_and_not_on_the_place(tmp_path: Path) -> None:
         ("[columns]\nforce = 3\n" + ONE, r"\[columns\]: force must be a header's text, got 3"),
         ('[columns]\nforce = "Q"\n' + ONE, r"a.csv: column 'Q' for force must be among the head"),
         ('[columns]\ntemperature = "Q"\n' + ONE, "temperature must be in a column 'Q' of at least"),
-        ('[units]\nforce = "m"\n' + ONE, r"\[units\]: unit of force must be .* a unit of length"),
-        ("[units]\nforce = 1\n" + ONE, r"\[units\]: unit of force must be a unit .* got 1"),
+        ('[units]\nforce = "m"\n' + ONE,
+         r"\[units\]: force must be in a unit of force such as 'N', got 'm', a unit of length"),
+        ("[units]\nforce = 1\n" + ONE, r"\[units\]: force must be in a unit .* got 1"),
         ('[units]\nforse = "N"\n' + ONE, r"\[units\]: key 'forse' .* mean 'force'"),
     ],
 )  # fmt: skip
