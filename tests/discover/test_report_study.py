@@ -95,6 +95,13 @@ def test_page_carries_each_part(page):
         assert part in page.text
 
 
+def test_the_error_of_other_methods_is_named_as_another_measure_than_the_verdict_s(page):
+    _, section = page.text.split("What other methods say")
+    section, _ = section.split("What to know")
+    assert "another measure than the verdict's" in section
+    assert "‖e‖/‖F‖ over the lines, records alike" in section
+
+
 def test_text_of_a_campaign_is_escaped_in_page_and_pictures():
     document, data = sample_document(), sample_data()
     document["campaign"]["title"] = "<script>alert(1)</script> & $x^2$"
