@@ -27,7 +27,7 @@ _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _SHAPE_DOUBT = 0.045  # of an effect's amplitude: no formula follows a measured shape closer
 _JOINT_DOUBT = 0.1  # likewise of what moves the device otherwise: contact and loss are simplified
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
-_SEEN = 0.02  # of a record's mean square error, by which an effect has to lower one of them
+_BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
 _FOLDS = 16
 _LEFT_OUT_STEPS = 3
 _LEFT_OUT_ENOUGH = 0.01
@@ -152,7 +152,7 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         mended = _mended(fitted, fit, contest, name, fits.get(name))
         gained = fit.chi2 - mended.chi2
         if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
-            return Search(start, refitted, tuple(rounds), contest.without(name))
+            return Search(start, refitted, tuple(rounds), _refused(rows, now, contest, name))
         doubt += _doubt(name) ** 2 * gained
         first = len(fit.model.terms)
         mended, dropped, names = _without_superfluous(fitted, mended, names)
@@ -161,8 +161,9 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         names.append((name, first))
         fit = mended
         after = stage(rows, fit)
-        if not _closes(rows, now, after):
-            return Search(start, refitted, tuple(rounds), contest.without(name), name)
+        if _pooled(rows, after) > _pooled(rows, now):
+            contest = _refused(rows, now, contest, name)
+            return Search(start, refitted, tuple(rounds), contest, name)
         now = after
         rounds.append(Round(name, first, contest, after, dropped))
 
@@ -190,14 +191,14 @@ def _doubt(name: str) -> float:
     return _JOINT_DOUBT if joint else _SHAPE_DOUBT
 
 
-def _closes(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
-    """Tell whether the pooled gap falls, and that of one record at least by what can be seen."""
-    falls = any(
-        a.error < (1.0 - _SEEN) * b.error
-        for r, a, b in zip(rows, after.misfits, before.misfits, strict=True)
-        if not r.observation.held_out
-    )
-    return falls and _pooled(rows, after) <= _pooled(rows, before)
+def _refused(rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str) -> Contest:
+    """Return the contest without an effect that leaves a gap beyond the noise as it is.
+
+    Where the gap is no more than noise, it can't tell whether the effect helps.
+    """
+    seen = [m for r, m in zip(rows, at.misfits, strict=True) if not r.observation.held_out]
+    beyond = pooled(seen) > _BEYOND * pooled(seen, noise=True)
+    return contest.without(name) if beyond else contest
 
 
 def _pooled(rows: Sequence[RecordRows], at: Stage) -> float:

@@ -23,6 +23,7 @@ _MOST_STEPS = 1_000_000  # of one pass: a stiffer joint than they follow counts 
 _HARDEST = 8.0
 _RIDGE = 1e-12
 _LEAST_DRY = 1e-6  # of the force's root mean square
+_ADDED_MASS = 1e-3  # of what would make the whole force: a damper's own time can't be stepped
 _NEWTON = 2  # steps for the speed after friction
 _SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
 _REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
@@ -147,9 +148,12 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     behind = 0.0 if joint.fluid_only else dry
     rigid = mass * motion.acceleration + viscous * v + quadratic * v * np.abs(v)
     rigid = rigid + behind * np.tanh(v / reversal)
-    natural = np.sqrt(joint.stiffness / mass)
     most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
-    inner = int(np.clip(np.ceil(natural * motion.step / _STEP), 1, most))
+    resistance = viscous + quadratic * float(np.abs(v).max())
+    carried_along = _ADDED_MASS * float(np.std(rigid)) / float(np.std(motion.acceleration))
+    mass = max(mass, carried_along, resistance * motion.step / most)
+    fastest = max(float(np.sqrt(joint.stiffness / mass)), resistance / mass)
+    inner = int(np.clip(np.ceil(fastest * motion.step / _STEP), 1, most))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
     damping = 2.0 * joint.loss * np.sqrt(stiffness * mass)
     passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
@@ -161,7 +165,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     return np.asarray(force + carried - rigid)
 
 
-@njit(cache=True, fastmath=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, fastmath=True, error_model="numpy")  # type: ignore[untyped-decorator]
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, stiffness: float, damping: float, half: float, soft: float,
@@ -240,7 +244,7 @@ def _step(
     return result
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
 def _begin(
     before: Array, known: int, place: float, speed: float, place_now: float, speed_now: float
 ) -> int:

@@ -31,6 +31,19 @@ def test_a_spring_before_a_linear_device_has_its_transfer_function(frequency, lo
     assert np.std(found - exact) < 3e-4 * np.std(exact)
 
 
+def test_a_damper_of_hardly_any_mass_follows_its_spring():
+    """A dashpot behind a spring: the mass is too small for its own time to be stepped."""
+    given = motion(0.3)
+    force = 1e-3 * given.acceleration + 3000.0 * given.velocity
+    found = through_joint(force, given, Joint(4e4, 0.0), device_of(force, given))
+    lines = np.fft.rfft(given.displacement)
+    s = 2j * np.pi * 0.3 * np.arange(lines.size)
+    lines[1:] *= (3000.0 * s * 4e4 / (3000.0 * s + 4e4))[1:]
+    lines[0] = 0.0
+    exact = np.fft.irfft(lines, force.size)
+    assert np.std(found - exact) < 0.02 * np.std(exact)
+
+
 @pytest.mark.parametrize("reversal", [0.03, 0.2])
 def test_a_joint_that_hardly_yields_changes_nothing_not_even_at_the_reversal_of_friction(reversal):
     given = motion(0.4)
