@@ -176,7 +176,7 @@ def _stop(scales: Scales) -> list[Variant]:
 
 
 def _backlash(scales: Scales) -> list[Variant]:
-    free = [
+    return [
         _one(
             "backlash", 3, gap=float(g * scales.displacement), contact=k * scales.omega,
             loss=loss, inside=0.0,
@@ -185,16 +185,6 @@ def _backlash(scales: Scales) -> list[Variant]:
         for k in (4.0, 12.0, 30.0)
         for loss in (0.15, 0.5)
     ]
-    filled = [
-        _one(
-            "backlash", 4, gap=float(g * scales.displacement), contact=k * scales.omega,
-            loss=0.3, soft=soft, inside=0.0,
-        )
-        for g in np.geomspace(2e-4, 0.1, 6)
-        for k in (5.0, 15.0)
-        for soft in (0.02, 0.1)
-    ]
-    return free + filled
 
 
 def _cavitation(scales: Scales) -> list[Variant]:

@@ -11,18 +11,14 @@ from models.terms.term import ForceOf, Parameter, Shape, Term
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
     """Return the force through a joint with play; `coefficient` 1 is all of what it changes.
 
-    The flanks' contact has the natural frequency `contact` (rad/s) with the device's mass. With
-    `soft` above 0 the play is filled, by rubber say, that has this share of their stiffness.
+    The flanks' contact has the natural frequency `contact` (rad/s) with the device's mass.
     """
     force = force_of(motion)
     device = device_of(force, motion)
     stiffness = float(device[0]) * shape["contact"] ** 2
     if stiffness <= 0.0:
         return force
-    joint = Joint(
-        stiffness, shape["loss"], gap=shape["gap"], soft=shape["soft"],
-        fluid_only=shape["inside"] > 0.0,
-    )  # fmt: skip
+    joint = Joint(stiffness, shape["loss"], gap=shape["gap"], fluid_only=shape["inside"] > 0.0)
     return np.asarray(force + coefficient * (through_joint(force, motion, joint, device) - force))
 
 
@@ -36,7 +32,6 @@ TERM = Term(
         Parameter("gap", 0.001, 1.0, 0.05, "m", "displacement", "log"),
         Parameter("contact", 10.0, 1e4, 600.0, "rad/s", "", "log"),
         Parameter("loss", 0.0, 1.0, 0.2, ""),
-        Parameter("soft", 1e-4, 0.5, 0.0, "", "", "log"),
         Parameter("inside", 0.0, 1.0, 0.0, ""),
     ),
     nonnegative=True,

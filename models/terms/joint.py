@@ -40,8 +40,6 @@ class Joint:
     """Damping over twice the critical damping of the device's mass on the stiffness."""
     gap: float = 0.0
     """m, whole play."""
-    soft: float = 0.0
-    """Share of the stiffness, and of the damping, that a soft inlay has inside the play."""
     lower: float = -np.inf
     """N, least force that it carries."""
     upper: float = np.inf
@@ -159,8 +157,8 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, stiffness,
-        damping, 0.5 * joint.gap, joint.soft, joint.lower, joint.upper, int(joint.refilled),
-        joint.hardening, joint.hardens, passes,
+        damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.hardening,
+        joint.hardens, passes,
     )
     return np.asarray(force + carried - rigid)
 
@@ -168,8 +166,8 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
 @njit(cache=True, fastmath=True, error_model="numpy")  # type: ignore[untyped-decorator]
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
-    dry: float, slow: float, stiffness: float, damping: float, half: float, soft: float,
-    lower: float, upper: float, refilled: int, hardening: float, hardens: float, passes: int,
+    dry: float, slow: float, stiffness: float, damping: float, half: float, lower: float,
+    upper: float, refilled: int, hardening: float, hardens: float, passes: int,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps."""
     size = x.size
@@ -205,10 +203,6 @@ def _step(
                 elif depth < -half:
                     force = stiffness * (depth + half) + damping * (pace - now)
                     force = min(force, 0.0) if half > 0.0 else force
-                if soft > 0.0:
-                    force += soft * (
-                        stiffness * min(max(depth, -half), half) + damping * (pace - now)
-                    )
                 if hardening > 0.0 and (hardens == 0.0 or hardens * force > 0.0):
                     force *= 1.0 + min(abs(force) / hardening, _HARDEST)
                 if refilled == 1 and (force < lower or force > upper):
