@@ -194,10 +194,13 @@ def _doubt(name: str) -> float:
 def _refused(rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str) -> Contest:
     """Return the contest without an effect that leaves a gap beyond the noise as it is.
 
-    Where the gap is no more than noise, it can't tell whether the effect helps.
+    Where no record's gap is more than noise, it can't tell whether the effect helps.
     """
-    seen = [m for r, m in zip(rows, at.misfits, strict=True) if not r.observation.held_out]
-    beyond = pooled(seen) > _BEYOND * pooled(seen, noise=True)
+    beyond = any(
+        m.percent > _BEYOND * m.noise_percent
+        for r, m in zip(rows, at.misfits, strict=True)
+        if not r.observation.held_out
+    )
     return contest.without(name) if beyond else contest
 
 

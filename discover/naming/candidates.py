@@ -266,7 +266,11 @@ def _clipping(scales: Scales) -> list[Variant]:
 
 
 def _cubic(scales: Scales) -> list[Variant]:
-    return [_one("cubic-stiffness")]
+    closing = [
+        _one("cubic-stiffness", 1, closure=float(c * scales.displacement))
+        for c in (1.05, 1.2, 1.5, 2.5)
+    ]
+    return [_one("cubic-stiffness", closure=0.0), *closing]
 
 
 _MAKERS = {

@@ -1,19 +1,32 @@
 """Cubic stiffness: a spring that hardens or softens."""
 
+import numpy as np
+
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Shape, Term
+from models.terms.term import Parameter, Shape, Term
+
+_MOST_CLOSED = 0.98
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return the cube of the displacement, m^3."""
-    return motion.displacement**3
+    """Return the cube of the displacement, m^3.
+
+    With a `closure` L (m) above 0 it is x^3 / (1 - x^2/L^2): gas that is compressed and coils that
+    close harden faster than the cube.
+    """
+    x = motion.displacement
+    closure = shape.get("closure", 0.0)
+    if closure == 0.0:
+        return np.asarray(x**3)
+    return np.asarray(x**3 / (1.0 - np.minimum((x / closure) ** 2, _MOST_CLOSED)))
 
 
 TERM = Term(
     "cubic-stiffness",
     "N/m^3",
-    "k3 times displacement cubed",
+    "k3 times displacement cubed, over 1 - x^2/L^2 where it closes at L",
     column,
+    parameters=(Parameter("closure", 1.01, 10.0, 0.0, "m", "displacement", "log"),),
     mistaken_for=("end-stop", "stiffness"),
 )

@@ -16,6 +16,7 @@ SHAPES = {
     "power-law-damping": {"exponent": 1.6},
     "fractional-derivative": {"order": 1.7},
     "coulomb-friction": {"transition_speed": 0.02},
+    "cubic-stiffness": {"closure": 0.03},
     "stribeck-friction": {"stribeck_velocity": 0.05, "transition_speed": 0.004},
     "end-stop": {"gap": 0.006, "exponent": 1.5},
     "hysteresis": {"yield_displacement": 0.002},
