@@ -50,7 +50,7 @@ def discover(
     from discover.readers import read_campaign
     from discover.report.document import json_text
     from discover.report.study import study_figures, study_report
-    from discover.report.verdict import verdict_lines
+    from discover.report.verdict import error_lines, verdict_lines
     from discover.study import StudyOptions, run_study
 
     with working(f"Reading {source}"):
@@ -84,7 +84,7 @@ def discover(
         name="study.json",
         folder=folder,
         files=files,
-        summary=verdict_lines(document),
+        summary=(*error_lines(document), *verdict_lines(document)),
         as_json=as_json,
     )
     return 0

@@ -19,6 +19,7 @@ from discover.motion_fit import Observation, observe
 from discover.naming.contest import AGREES, UNKNOWN, Contest
 from discover.naming.fit import ModelFit, whole_model
 from discover.naming.forces import model_force
+from discover.record_checks import data_errors
 from discover.records import Campaign, Finding
 from models.checks import InputError, one_of
 from models.constitutive import Band, ForceModel, SegmentedModel
@@ -147,7 +148,9 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         shape=shape,
         last=_stated(found.last, ""),
         leave_one_out=not campaign.held_out,
-        findings=_findings(baseline, found, where_in_words(located)),
+        findings=(
+            *data_errors(campaign), *_findings(baseline, found, where_in_words(located))
+        ),
         given=baseline.whole,
         model=_mended(campaign, baseline, found),
         figure_data=_figures(baseline, found, rounds),

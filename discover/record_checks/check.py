@@ -141,6 +141,15 @@ def check_records(campaign: Campaign) -> CampaignCheck:
     return CampaignCheck(records, tuple(findings))
 
 
+def data_errors(campaign: Campaign) -> tuple[Finding, ...]:
+    """Return what is wrong with the records, not merely remarkable: signs, above all."""
+    return tuple(
+        f
+        for f in check_records(campaign).findings
+        if f.level == "error" and f not in campaign.findings
+    )
+
+
 def _signs(records: tuple[RecordCheck, ...]) -> list[Finding]:
     """Return findings on records whose force gives energy instead of taking it.
 

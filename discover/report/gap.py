@@ -19,7 +19,7 @@ from discover.plots.gap import (
 )
 from discover.report.environment import render
 from discover.report.motion import motion_lines
-from discover.report.verdict import named_line
+from discover.report.verdict import error_lines, named_line
 from discover.report.words import listed, percent, probability, term_name
 
 _VERDICTS = {
@@ -40,7 +40,8 @@ def gap_lines(document: Mapping[str, Any]) -> list[str]:
     """
     verdict = str(document["verdict"])
     names = [term_name(str(r["effect"])) for r in document["rounds"]]
-    lines = [f"Verdict: {verdict}: {_VERDICTS.get(verdict, '')}."]
+    lines = error_lines(document)
+    lines.append(f"Verdict: {verdict}: {_VERDICTS.get(verdict, '')}.")
     if names:
         lines.append(f"Missing: {listed(names)}.")
         for number, entry in enumerate(document["rounds"], start=1):

@@ -36,6 +36,15 @@ def verdict_lines(document: Mapping[str, Any]) -> tuple[str, str, str, str, str]
     )
 
 
+def error_lines(document: Mapping[str, Any]) -> list[str]:
+    """Return what is wrong with the data, which a verdict can't repair."""
+    return [
+        f"Error in the data: {f['record'] + ': ' if f.get('record') else ''}{f['text']}"
+        for f in document.get("findings", ())
+        if f["level"] == "error"
+    ]
+
+
 _NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from discover.record_checks import data_errors
 from discover.records import Campaign, Finding
 from discover.selection.judge import Judgement
 from discover.selection.structures import FRACTIONAL
@@ -77,7 +78,7 @@ def study_findings(
                 f" by {bands.frequency_advantage:.0f} nats), so they are given by frequency.",
             )
         )
-    return (*result, *campaign.findings, *prepared.findings)
+    return (*data_errors(campaign), *result, *campaign.findings, *prepared.findings)
 
 
 def _about_band(index: int, band: StudyBand) -> list[Finding]:

@@ -1,8 +1,11 @@
 """A study recovers stated models from their exact records, and says what it can't tell."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from discover.report.verdict import error_lines
 from discover.study import StudyOptions, run_study
 from tests.discover.exact import DEVICE_10, DEVICE_12, campaign, fractional, integer, segmented
 
@@ -132,3 +135,15 @@ def test_units_do_not_change_the_answer():
     assert second.fitted.shape["order"] == pytest.approx(first.fitted.shape["order"], abs=1e-5)
     assert one.bands[0].probability == pytest.approx(two.bands[0].probability, abs=1e-3)
     assert np.isfinite(two.relative_error_percent)
+
+
+def test_a_record_of_the_wrong_sign_is_an_error_that_the_study_says_first():
+    c1, c2 = DEVICE_12.laminar_coefficients
+    whole = campaign(integer(370.38, c2, c1, 0.0, 400.0))
+    turned = replace(whole.records[3], force=-whole.records[3].force)
+    records = (*whole.records[:3], turned, *whole.records[4:])
+    study = run_study(replace(whole, records=records), StudyOptions(bands=1))
+    assert study.findings[0].level == "error"
+    assert study.findings[0].record == turned.file
+    assert error_lines(study.to_dict())[0].startswith(f"Error in the data: {turned.file}: ")
+    assert error_lines(run_study(whole, StudyOptions(bands=1)).to_dict()) == []
