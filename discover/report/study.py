@@ -13,7 +13,7 @@ from discover.plots.loops import loops, representative
 from discover.plots.probabilities import probability_bars
 from discover.plots.record_map import record_map
 from discover.report.environment import render
-from discover.report.verdict import boundary_text, named_line, verdict_lines
+from discover.report.verdict import boundary_text, named_line, next_purpose, verdict_lines
 from discover.report.words import percent, significant
 
 
@@ -126,9 +126,9 @@ def _next(document: Mapping[str, Any]) -> str:
         f"Run one more sine test at {significant(test['frequency_hz'], 3)} Hz and "
         f"{significant(1e3 * test['amplitude_m'], 3)} mm"
     )
-    separates = [str(s) for s in test.get("separates", ())]
-    if len(separates) == 2:
-        text += f". Of all tests within the limits it best tells {separates[0]} from {separates[1]}"
+    purpose = next_purpose(test)
+    if purpose:
+        text += f". Of all tests within the limits it best {purpose}"
     if test.get("gain") is not None:
         text += f" (expected gain {significant(test['gain'], 3)} nats)"
     return text + ". Then run the command below on the campaign with that record added."

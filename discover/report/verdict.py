@@ -144,12 +144,23 @@ def next_line(document: Mapping[str, Any]) -> str:
             return "Next test: none needed; no pair of structures is left to tell apart."
         return "Next test: none proposed."
     amplitude = significant(1e3 * test["amplitude_m"], 3)
-    separates = listed([str(s) for s in test.get("separates", ())], last="from")
+    purpose = next_purpose(test)
     return (
         f"Next test: {significant(test['frequency_hz'], 3)} Hz at {amplitude} mm"
-        + (f", which best tells {separates}" if separates else "")
+        + (f", which best {purpose}" if purpose else "")
         + "."
     )
+
+
+def next_purpose(test: Mapping[str, Any]) -> str:
+    """Say what the next test does best; "" where that is not said.
+
+    Two bands of one structure are separated by their boundary alone.
+    """
+    separates = [str(s) for s in test.get("separates", ())]
+    if len(set(separates)) == 1:
+        return f"narrows the boundary between the bands of {separates[0]}"
+    return f"tells {listed(separates, last='from')}" if separates else ""
 
 
 def boundary_text(boundary: Mapping[str, Any], document: Mapping[str, Any]) -> str:

@@ -8,9 +8,11 @@ import numpy as np
 
 from discover.record_checks import data_errors
 from discover.records import Campaign, Finding
+from discover.segmentation import MIN_WINDOWS
 from discover.selection.judge import Judgement
 from discover.selection.structures import FRACTIONAL
 from discover.study.bands import Bands
+from discover.study.options import StudyOptions
 from discover.study.preparation import Prepared
 from discover.study.result import Nuisance, StudyBand
 
@@ -25,9 +27,10 @@ def study_findings(
     bands: Bands,
     study_bands: Sequence[StudyBand],
     nuisance: Sequence[Nuisance],
+    options: StudyOptions,
 ) -> tuple[Finding, ...]:
     """Return everything that a user should know, most important first."""
-    result: list[Finding] = []
+    result = _not_as_asked(campaign, study_bands, options)
     if bands.single:
         count = len(campaign.fitted)
         reason = "one record" if count == 1 else f"{count} records"
@@ -132,6 +135,30 @@ def _other_forms(index: int, judgement: Judgement) -> list[Finding]:
             " Their sum is known well, each coefficient alone is not.",
         )
     ]
+
+
+def _not_as_asked(
+    campaign: Campaign, bands: Sequence[StudyBand], options: StudyOptions
+) -> list[Finding]:
+    """Return what was asked for and could not be done."""
+    result = []
+    if options.coordinate == "dean" and campaign.device is None:
+        result.append(
+            Finding(
+                "warning",
+                "Bands by Dean number need the device's geometry ([device] in campaign.toml). They"
+                " are by speed amplitude, to which it is proportional.",
+            )
+        )
+    if options.bands is not None and len(bands) != options.bands:
+        result.append(
+            Finding(
+                "warning",
+                f"{options.bands} bands were asked for, {len(bands)} are given: every band takes"
+                f" at least {MIN_WINDOWS} tests.",
+            )
+        )
+    return result
 
 
 def _about_nuisance(nuisance: Nuisance) -> Finding:

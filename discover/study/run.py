@@ -71,7 +71,7 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
     )
     check = _dean(bands, boundaries, device, chosen)
     nuisance = _nuisance(bands.judgements, prepared.delay)
-    findings = study_findings(campaign, prepared, bands, study_bands, nuisance)
+    findings = study_findings(campaign, prepared, bands, study_bands, nuisance, chosen)
     return Study(
         title=campaign.title,
         content_hash=campaign.content_hash,

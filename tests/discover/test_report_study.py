@@ -6,7 +6,7 @@ import pytest
 
 from discover.figure_data import StudyFigureData
 from discover.report.study import study_figures, study_report
-from discover.report.verdict import dean_line, verdict_lines
+from discover.report.verdict import dean_line, next_purpose, verdict_lines
 from tests.discover.sample_study import sample_data, sample_document
 
 VOID = {"meta", "br", "path", "use", "rect"}
@@ -150,3 +150,10 @@ def test_dean_line_leads_with_the_verdict(verdict):
     document = sample_document()
     document["dean_check"]["verdict"] = verdict
     assert dean_line(document).startswith(f"Dean check: {verdict}: ")
+
+
+def test_bands_of_one_structure_are_not_told_from_themselves():
+    same = {"separates": ["FOIM", "FOIM"]}
+    assert next_purpose(same) == "narrows the boundary between the bands of FOIM"
+    assert next_purpose({"separates": ["FOIM", "other"]}) == "tells FOIM from other"
+    assert next_purpose({}) == ""

@@ -147,3 +147,13 @@ def test_a_record_of_the_wrong_sign_is_an_error_that_the_study_says_first():
     assert study.findings[0].record == turned.file
     assert error_lines(study.to_dict())[0].startswith(f"Error in the data: {turned.file}: ")
     assert error_lines(run_study(whole, StudyOptions(bands=1)).to_dict()) == []
+
+
+def test_what_was_asked_for_and_could_not_be_done_is_said():
+    c1, c2 = DEVICE_12.laminar_coefficients
+    whole = campaign(integer(370.38, c2, c1, 0.0, 400.0))
+    few = replace(whole, records=whole.records[:5], device=None)
+    study = run_study(few, StudyOptions(coordinate="dean", bands=4))
+    warned = " ".join(f.text for f in study.findings if f.level == "warning")
+    assert "need the device's geometry" in warned
+    assert "4 bands were asked for" in warned
