@@ -199,9 +199,10 @@ def where_in_words(found: Sequence[Place]) -> str:
     name, value = max(mean.items(), key=lambda item: item[1])
     value /= max(float(weights.sum()), 1e-300)
     near = float(weights @ np.array([p.reversal for p in above]) / max(weights.sum(), 1e-300))
+    most = f", {100.0 * greatest.share:.0f} % of its energy in {greatest.record}"
+    place = f"in {len(above)} of {len(found)} records{most}" if len(found) > 1 else "in the record"
+    follows = f"{100.0 * value:.0f} % of it follows {name}" if value > 0.1 else "it follows nothing"
     return (
-        f"The misfit stands above the noise in {len(above)} of {len(found)} records,"
-        f" {100.0 * greatest.share:.0f} % of its energy in {greatest.record};"
-        f" {100.0 * value:.0f} % of it follows {name}, and {100.0 * near:.0f} % lies within 5 % of"
-        " the stroke around reversal."
+        f"The misfit stands above the noise {place}; {follows}, and {100.0 * near:.0f} % lies within"
+        " 5 % of the stroke around reversal."
     )
