@@ -203,6 +203,6 @@ def where_in_words(found: Sequence[Place]) -> str:
     place = f"in {len(above)} of {len(found)} records{most}" if len(found) > 1 else "in the record"
     follows = f"{100.0 * value:.0f} % of it follows {name}" if value > 0.1 else "it follows nothing"
     return (
-        f"The misfit stands above the noise {place}; {follows}, and {100.0 * near:.0f} % lies within"
-        " 5 % of the stroke around reversal."
+        f"The misfit stands above the noise {place}; {follows}, and {100.0 * near:.0f} % lies"
+        " within 5 % of the stroke around reversal."
     )
