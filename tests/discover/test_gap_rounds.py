@@ -82,3 +82,11 @@ def test_a_force_at_half_the_test_s_frequency_is_not_taken_for_drift_nor_for_noi
     found = close_gap(campaign(law), "fit:inertia,viscous-damping")
     assert found.verdict == "unexplained"
     assert found.last[0][0] == "unknown"
+
+
+def test_a_large_offset_has_no_shape_that_could_hide_a_small_friction():
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 300.0 + 9.0 * np.tanh(v / 1e-3)
+
+    found = close_gap(campaign(law, noise=0.002), "fit:inertia,viscous-damping")
+    assert [r.effect for r in found.rounds] == ["force-offset", "coulomb-friction"]
