@@ -55,18 +55,12 @@ class Joint:
 
 
 class _Last:
-    """What was last asked for: the same device is tried behind many joints."""
+    """What was last asked for: the same device is tried behind many joints.
 
-    force: ReferenceType[Array] | None = None
-    motion: ReferenceType[Motion] | None = None
-    device = np.zeros(5)
+    Its parts are replaced together, so that threads never see one's force with another's device.
+    """
 
-    @classmethod
-    def known(cls, force: Array, motion: Motion) -> bool:
-        """Tell whether the last answer is that for these very objects."""
-        if cls.force is None or cls.motion is None:
-            return False
-        return cls.force() is force and cls.motion() is motion
+    known: tuple[ReferenceType[Array], ReferenceType[Motion], Array] | None = None
 
 
 def device_of(force: Array, motion: Motion) -> Array:
@@ -76,10 +70,12 @@ def device_of(force: Array, motion: Motion) -> Array:
     speed (m/s) over which the dry one reverses. None is negative; all are zero for a force that is
     not finite.
     """
-    if not _Last.known(force, motion):
-        _Last.device = _device(force, motion)
-        _Last.force, _Last.motion = ref(force), ref(motion)
-    return _Last.device
+    last = _Last.known
+    if last is not None and last[0]() is force and last[1]() is motion:
+        return last[2]
+    found = _device(force, motion)
+    _Last.known = ref(force), ref(motion), found
+    return found
 
 
 def _device(force: Array, motion: Motion) -> Array:
