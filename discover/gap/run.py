@@ -300,6 +300,18 @@ def _findings(baseline: Baseline, found: Search, text: str) -> tuple[Finding, ..
                         f" {entry.effect} and dropped.")
             )
     ended = found.last.ranked[0]
+    seen = [m for r, m in zip(baseline.rows, found.final.misfits, strict=True)
+            if not r.observation.held_out]  # fmt: skip
+    over = pooled(seen) / max(pooled(seen, noise=True), 1e-300)
+    if ended[0] == AGREES and not found.rounds and over > _CLOSED_BY_SHAPES:
+        result.append(
+            Finding(
+                "warning",
+                f"The gap is {over:.1f} times the noise beside the tests' own lines, yet nothing in"
+                " them is wrong: a source that does not follow the motion (hum, a pump, drift)."
+                " Look at the force's spectrum.",
+            )
+        )
     if found.rounds and ended[0] == AGREES and found.last.tolerated > 0.0:
         result.append(
             Finding(

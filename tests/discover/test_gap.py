@@ -101,6 +101,15 @@ def test_a_hum_between_the_harmonics_is_not_given_a_name():
     assert found.to_dict()["shape"]
 
 
+def test_a_tone_that_does_not_follow_the_motion_is_never_silently_agreed_with():
+    for tone in (5.3, 17.7):
+        found = close_gap(
+            campaign(lambda t, x, v, a, w=tone: device(t, x, v, a) + 8.0 * np.sin(w * t)), BASE
+        )
+        warned = any("does not follow the motion" in f.text for f in found.findings)
+        assert found.verdict == "unexplained" or warned
+
+
 def test_leaving_out_a_record_predicts_worse_than_fitting_it():
     found = close_gap(campaign(device), BASE)
     assert found.leave_one_out
