@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import shlex
-from pathlib import Path
-from typing import Annotated
 
 import typer
 
@@ -18,14 +16,7 @@ FAILED = 1
 
 def check(
     context: typer.Context,
-    campaign: Annotated[
-        Path | None,
-        typer.Argument(
-            metavar="[CAMPAIGN]",
-            help="Folder with campaign.toml and its records [default: the shipped one].",
-            show_default=False,
-        ),
-    ] = None,
+    campaign: options.ShippedCampaign = None,
     out: options.Out = None,
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
-
 import typer
 
 from discover.cli import options
@@ -16,14 +13,7 @@ from models.checks import one_of
 
 def discover(
     context: typer.Context,
-    campaign: Annotated[
-        Path | None,
-        typer.Argument(
-            metavar="[CAMPAIGN]",
-            help="Folder with campaign.toml and its records [default: the shipped one].",
-            show_default=False,
-        ),
-    ] = None,
+    campaign: options.ShippedCampaign = None,
     terms: options.Terms = None,
     orders: options.Orders = None,
     exponents: options.Exponents = None,

@@ -13,6 +13,14 @@ from models.checks import InputError, number
 DEFAULT_SEED = 0
 MOST_VALUES = 1000
 
+ShippedCampaign = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="[CAMPAIGN]",
+        help="Folder with campaign.toml and its records [default: the shipped one].",
+        show_default=False,
+    ),
+]
 Out = Annotated[
     Path | None,
     typer.Option(

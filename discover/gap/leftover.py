@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from discover.gap.where import Place, misfit_at_samples
+from discover.gap.where import Place, misfit_at_samples, phase_means
 from discover.naming.fit import whole_model
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
@@ -15,7 +15,6 @@ from models.constitutive import ForceModel
 
 _FEWEST = 5  # sine tests from which growth and memory can be told
 _SPAN = 1.5  # ratio that a plan has to cover for a power of it
-_PHASES = 48
 _DEGREE = 5
 _FUNCTION, _NO_FUNCTION = 0.85, 0.6  # shares explained by displacement and velocity alone
 _MAJOR = 0.15  # of the energy, from which a harmonic is listed
@@ -47,8 +46,9 @@ def leftover_in_words(
     ]
     if not shown:
         return ""
-    energies = [_harmonics(r, model) for r in shown]
-    parts = [_symmetry(energies), _phase(shown, model), _growth(shown, energies)]
+    lines = [_lines(r, model) for r in shown]
+    energies = [_above_noise(r, own) for r, own in zip(shown, lines, strict=True)]
+    parts = [_symmetry(energies), _phase(shown, lines), _growth(shown, energies)]
     return "; ".join(p for p in (*parts, _memory(shown, model)) if p)
 
 
@@ -59,11 +59,10 @@ def _lines(rows: RecordRows, model: ForceModel) -> Array:
     return np.asarray((window.force - window.project(force))[1:])
 
 
-def _harmonics(rows: RecordRows, model: ForceModel) -> Array:
+def _above_noise(rows: RecordRows, lines: Array) -> Array:
     """Return the energy (H,) of each harmonic above the noise, N^2."""
-    window = rows.observation.windows[0]
-    power = np.abs(_lines(rows, model)) ** 2
-    return np.asarray(np.maximum(power - 2.0 * window.variance[1:], 0.0))
+    noise = 2.0 * rows.observation.windows[0].variance[1:]
+    return np.asarray(np.maximum(np.abs(lines) ** 2 - noise, 0.0))
 
 
 def _symmetry(energies: Sequence[Array]) -> str:
@@ -77,8 +76,8 @@ def _symmetry(energies: Sequence[Array]) -> str:
     return f"it is {turned} when the motion is turned round{harmonics}"
 
 
-def _phase(rows: Sequence[RecordRows], model: ForceModel) -> str:
-    first = np.array([_lines(r, model)[0] for r in rows])
+def _phase(rows: Sequence[RecordRows], lines: Sequence[Array]) -> str:
+    first = np.array([own[0] for own in lines])
     power = np.abs(first) ** 2 / np.array([r.observation.windows[0].power for r in rows])
     along = float(power @ np.cos(np.angle(first)) ** 2 / max(power.sum(), 1e-300))
     if along > 0.8:
@@ -89,7 +88,7 @@ def _phase(rows: Sequence[RecordRows], model: ForceModel) -> str:
 
 
 def _growth(rows: Sequence[RecordRows], energies: Sequence[Array]) -> str:
-    """Return how the misfit's size grows with frequency and amplitude, powers with deviations."""
+    """Return how the misfit's size grows with frequency and amplitude: powers, ± two deviations."""
     if len(rows) < _FEWEST:
         return ""
     size = 0.5 * np.log(np.array([max(float(e.sum()), 1e-300) for e in energies]))
@@ -122,12 +121,13 @@ def _memory(rows: Sequence[RecordRows], model: ForceModel) -> str:
     powers = [(i, j) for i in range(_DEGREE + 1) for j in range(_DEGREE + 1 - i)]
     for r in rows:
         o = r.observation
-        left = misfit_at_samples(r, model)
-        phase = (np.mod(o.time * o.frequency, 1.0) * _PHASES).astype(int)
-        count = np.maximum(np.bincount(phase, minlength=_PHASES), 1)
         x, v, mean = (
-            np.bincount(phase, weights=c, minlength=_PHASES) / count
-            for c in (o.at_samples(o.motion.displacement), o.at_samples(o.motion.velocity), left)
+            phase_means(o, c)[0]
+            for c in (
+                o.at_samples(o.motion.displacement),
+                o.at_samples(o.motion.velocity),
+                misfit_at_samples(r, model),
+            )
         )
         level = max(float(np.sqrt(np.mean(mean**2))), 1e-300)
         blocks.append(np.stack([(x / top) ** i * (v / pace) ** j for i, j in powers]) / level)

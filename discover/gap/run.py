@@ -149,7 +149,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         last=_stated(found.last, ""),
         leave_one_out=not campaign.held_out,
         findings=(
-            *data_errors(campaign), *_findings(baseline, found, where_in_words(located))
+            *data_errors(campaign), *_findings(baseline, found, where_in_words(located), noise)
         ),
         given=baseline.whole,
         model=_mended(campaign, baseline, found),
@@ -263,7 +263,9 @@ def _relative(named: NamedEffect) -> float:
     return (named.interval[1] - named.interval[0]) / 3.92 / abs(named.coefficient)
 
 
-def _findings(baseline: Baseline, found: Search, text: str) -> tuple[Finding, ...]:
+def _findings(
+    baseline: Baseline, found: Search, text: str, noise: float
+) -> tuple[Finding, ...]:
     result = [Finding("note", text)]
     for r in baseline.rows:
         if r.observation.phase_fitted:
@@ -300,9 +302,7 @@ def _findings(baseline: Baseline, found: Search, text: str) -> tuple[Finding, ..
                         f" {entry.effect} and dropped.")
             )
     ended = found.last.ranked[0]
-    seen = [m for r, m in zip(baseline.rows, found.final.misfits, strict=True)
-            if not r.observation.held_out]  # fmt: skip
-    over = pooled(seen) / max(pooled(seen, noise=True), 1e-300)
+    over = _seen(baseline, found.final) / max(noise, 1e-300)
     if ended[0] == AGREES and not found.rounds and over > _CLOSED_BY_SHAPES:
         result.append(
             Finding(

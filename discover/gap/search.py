@@ -26,6 +26,7 @@ _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _SHAPE_DOUBT = 0.045  # of an effect's amplitude: no formula follows a measured shape closer
 _JOINT_DOUBT = 0.1  # likewise of what moves the device otherwise: contact and loss are simplified
+# Of one form only: they leave no doubt of shape.
 _EXACT = ("inertia", "viscous-damping", "stiffness", "force-offset", "time-delay")
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise

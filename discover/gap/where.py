@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.figure_data import MisfitCell
+from discover.motion_fit import Observation
 from discover.naming.fit import whole_model
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
-from models.checks import Array
+from models.checks import Array, Indices
 from models.constitutive import ForceModel
 
 _CELLS = 12
@@ -133,10 +134,16 @@ def _smooth_misfit(rows: RecordRows, left: Array) -> Array:
     o = rows.observation
     if o.kind != "sine":
         return np.asarray(left - left.mean())
-    phase = (np.mod(o.time * o.frequency, 1.0) * _PHASES).astype(int)
-    count = np.maximum(np.bincount(phase, minlength=_PHASES), 1)
-    mean = np.bincount(phase, weights=left, minlength=_PHASES) / count
+    mean, phase = phase_means(o, left)
     return np.asarray(mean[phase])
+
+
+def phase_means(observation: Observation, values: Array) -> tuple[Array, Indices]:
+    """Return a sine test's values averaged by phase (64,), and each sample's phase (N,)."""
+    cycles = observation.time * observation.frequency
+    phase = (np.mod(cycles, 1.0) * _PHASES).astype(np.int_)
+    count = np.maximum(np.bincount(phase, minlength=_PHASES), 1)
+    return np.bincount(phase, weights=values, minlength=_PHASES) / count, phase
 
 
 def _powers(value: Array) -> Array:

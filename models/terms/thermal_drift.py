@@ -13,7 +13,8 @@ def column(motion: Motion, shape: Shape) -> Array:
     `warming_time` 0 stands for a straight change, w = t. With `heating` above 0 w grows with the
     record's mean square speed, in (m/s)^2, to that power: dissipation warms the oil. With
     `saturation` s above 0 the change is w / (1 + s w): viscosity falls exponentially with
-    temperature, and with it the heat that it makes (the closed form without cooling).
+    temperature, and with it the heat that it makes (the closed form without cooling). `saturation`
+    is per unit of w.
     """
     elapsed = motion.time - motion.time[0]
     constant = shape["warming_time"]

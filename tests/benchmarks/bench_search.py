@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 
 from discover.gap import close_gap
-from discover.records import Campaign, Record
-from tests.benchmarks.bench_study import Row
+from discover.records import Campaign
+from models.checks import Array
+from tests.benchmarks.bench_study import Row, sine_records
 
 _AMPLITUDES = (0.003, 0.006, 0.012, 0.020)
 _FREQUENCIES = (0.3, 0.8, 2.0, 5.0)
@@ -23,24 +25,20 @@ _TERMS = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
 
 def campaign(samples: int, hidden: str) -> Campaign:
     """Return 16 tests of a laminar device with something hidden, 1 % noise."""
-    rng = np.random.default_rng(1)
-    records = []
-    for amplitude in _AMPLITUDES:
-        for frequency in _FREQUENCIES:
-            omega = 2.0 * np.pi * frequency
-            seconds = np.arange(samples) * (_CYCLES / frequency / samples)
-            angle = omega * seconds + rng.uniform(0.0, 2.0 * np.pi)
-            x, v = amplitude * np.sin(angle), amplitude * omega * np.cos(angle)
-            force = -300.0 * omega**2 * x + 2e3 * v + 2e4 * v * np.abs(v)
-            force += 300.0 * np.tanh(v / 1e-3)
-            if hidden == "stiffness":
-                force += 4e4 * x
-            elif hidden == "lag":  # friction late by one phase in every test: no entry is that
-                force += 200.0 * np.clip(np.sin(angle - 0.6) / 0.4, -1.0, 1.0)
-            force += 0.01 * np.sqrt(np.mean(force**2)) * rng.standard_normal(samples)
-            x = x + 1e-7 * rng.standard_normal(samples)
-            records.append(Record(f"{frequency:.3g}hz-{1e3 * amplitude:g}mm", seconds, force, x))
-    return Campaign("16 tests", tuple(records), content_hash="0")
+
+    def law(omega: float, angle: Array, x: Array, v: Array) -> Array:
+        force = -300.0 * omega**2 * x + 2e3 * v + 2e4 * v * np.abs(v) + 300.0 * np.tanh(v / 1e-3)
+        if hidden == "stiffness":
+            force += 4e4 * x
+        elif hidden == "lag":  # friction late by one phase in every test: no entry is that
+            force += 200.0 * np.clip(np.sin(angle - 0.6) / 0.4, -1.0, 1.0)
+        return np.asarray(force)
+
+    records = sine_records(
+        law, product(_AMPLITUDES, _FREQUENCIES), samples, cycles=_CYCLES, noise=0.01,
+        displacement_noise=1e-7, seed=1,
+    )  # fmt: skip
+    return Campaign("16 tests", records, content_hash="0")
 
 
 def rows() -> Iterator[Row]:

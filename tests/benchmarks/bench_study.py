@@ -6,7 +6,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import product
 
 import numpy as np
 
@@ -14,8 +15,11 @@ from discover.records import Campaign, Record
 from discover.study import StudyOptions, run_study
 from discover.study.bands import find_bands
 from discover.study.preparation import prepare
+from models.checks import Array
 from models.device import Device
 
+Law = Callable[[float, Array, Array, Array], Array]
+"""Force (N,) from omega (rad/s), the angle, displacement and velocity, each (N,)."""
 Row = tuple[str, float, str, str]
 """What was measured, value, unit, beside what."""
 
@@ -26,22 +30,41 @@ _SIZES = (5_000, 20_000)
 _REPEATS = 3
 
 
+def sine_records(
+    law: Law, plan: Iterable[tuple[float, float]], samples: int, *, cycles: float, noise: float,
+    displacement_noise: float, seed: int,
+) -> tuple[Record, ...]:  # fmt: skip
+    """Return a sine test for each (amplitude, frequency), m and Hz, with white noise.
+
+    The law gives the force (N,) from omega, the angle (N,), x and v; `noise` is a share of it.
+    """
+    rng = np.random.default_rng(seed)
+    records = []
+    for amplitude, frequency in plan:
+        omega = 2.0 * np.pi * frequency
+        seconds = np.arange(samples) * (cycles / frequency / samples)
+        angle = omega * seconds + rng.uniform(0.0, 2.0 * np.pi)
+        x, v = amplitude * np.sin(angle), amplitude * omega * np.cos(angle)
+        force = law(omega, angle, x, v)
+        force = force + noise * np.sqrt(np.mean(force**2)) * rng.standard_normal(samples)
+        x = x + displacement_noise * rng.standard_normal(samples)
+        records.append(Record(f"{frequency:.3g}hz-{1e3 * amplitude:g}mm", seconds, force, x))
+    return tuple(records)
+
+
 def campaign(samples: int) -> Campaign:
     """Return 40 tests of a laminar device, each of so many samples, 2 % noise."""
-    rng = np.random.default_rng(0)
-    records = []
-    for amplitude in _AMPLITUDES:
-        for frequency in _FREQUENCIES:
-            omega = 2.0 * np.pi * frequency
-            seconds = np.arange(samples) * (_CYCLES / frequency / samples)
-            angle = omega * seconds + rng.uniform(0.0, 2.0 * np.pi)
-            v = amplitude * omega * np.cos(angle)
-            force = -370.38 * amplitude * omega**2 * np.sin(angle) + 3e3 * v
-            force += 3e4 * v * np.abs(v) + 400.0 * np.sign(v)
-            force += 0.02 * np.sqrt(np.mean(force**2)) * rng.standard_normal(samples)
-            x = amplitude * np.sin(angle) + 1e-6 * rng.standard_normal(samples)
-            records.append(Record(f"{frequency:.3g}hz-{1e3 * amplitude:g}mm", seconds, force, x))
-    return Campaign("40 tests", tuple(records), Device.preset("device-12"), content_hash="0")
+
+    def law(omega: float, angle: Array, x: Array, v: Array) -> Array:
+        return np.asarray(
+            -370.38 * omega**2 * x + 3e3 * v + 3e4 * v * np.abs(v) + 400.0 * np.sign(v)
+        )
+
+    records = sine_records(
+        law, product(_AMPLITUDES, _FREQUENCIES), samples, cycles=_CYCLES, noise=0.02,
+        displacement_noise=1e-6, seed=0,
+    )  # fmt: skip
+    return Campaign("40 tests", records, Device.preset("device-12"), content_hash="0")
 
 
 def measured(samples: int) -> tuple[float, float, float]:

@@ -16,8 +16,7 @@ ABOUT = {
     "first": "Forms of the rig's catalogue, random devices, 12 sine tests on a grid, 1 % noise"
     " that is half white and half first-order coloured.",
     "second": "Other forms, devices, plans (10 to 16 records off any grid) and noise (1/f, mains"
-    " hum, resonant; 1 %). Run only at the end; single answers are not listed, so that nothing is"
-    " tuned on them.",
+    " hum, resonant; 1 %). Single answers are not listed: nothing is to be tuned on them.",
 }
 
 
