@@ -84,6 +84,19 @@ def test_a_force_at_half_the_test_s_frequency_is_not_taken_for_drift_nor_for_noi
     assert found.last[0][0] == "unknown"
 
 
+def test_friction_is_added_though_a_second_missing_effect_widens_the_pooled_gap():
+    """Quadratic damping makes the loud tests' gap, friction the quiet ones', which are fitted."""
+
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 2e4 * v * np.abs(v) + 60.0 * np.tanh(v / 1e-3)
+
+    found = close_gap(campaign(law), "fit:inertia,viscous-damping")
+    named = {r.effect for r in found.rounds}
+    assert {"coulomb-friction"} < named
+    assert named & {"quadratic-damping", "power-law-damping"}
+    assert found.final_gap_percent < 1.3 * found.noise_percent
+
+
 def test_a_large_offset_has_no_shape_that_could_hide_a_small_friction():
     def law(t, x, v, a):
         return device(t, x, v, a) + 300.0 + 9.0 * np.tanh(v / 1e-3)
