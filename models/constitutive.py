@@ -5,6 +5,7 @@ The paper's four families are functions here that return a `ForceModel` (Eqs. 5,
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
@@ -23,6 +24,7 @@ from models.terms import TERMS, Shape, Term, find_term, own_terms
 from models.terms.own import same_file
 
 _HARMONIC_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
+_FIRST_POWER = re.compile(r"\^1(?![\d.])")
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,8 @@ class FittedTerm:
     @property
     def unit(self) -> str:
         """SI unit of the coefficient."""
-        return self.term.unit.format(**{k: f"{v:.4g}" for k, v in self.shape.items()})
+        text = self.term.unit.format(**{k: f"{v:.4g}" for k, v in self.shape.items()})
+        return _FIRST_POWER.sub("", text)
 
     def to_dict(self) -> dict[str, Any]:
         """Return id, coefficient, unit and shape parameters, flat as in documents.

@@ -9,6 +9,7 @@ import numpy as np
 from discover.figure_data import EffectShape, GapCurves
 from discover.gap.accuracy import Misfit
 from discover.gap.search import Round
+from discover.gap.stages import without
 from discover.naming.fit import whole_model
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
@@ -61,12 +62,6 @@ def curves(rows: RecordRows, before: Array, after: Array, was: Misfit, now: Misf
     )
 
 
-def without(model: ForceModel, first: int, effect: str) -> ForceModel:
-    """Return the model without the terms of an effect that starts at index `first`."""
-    kept = [t for i, t in enumerate(model.terms) if i < first or t.id != effect]
-    return ForceModel(tuple(kept), model.name)
-
-
 def shape_of(
     rows: Sequence[RecordRows], entry: Round, number: int, relative_error: float
 ) -> EffectShape:
@@ -83,8 +78,8 @@ def shape_of(
     relative_error : float
         Standard error of the coefficient over the coefficient.
     """
-    model = entry.stage.fit.model
-    rest = without(model, entry.first, entry.effect)
+    model = entry.after.fit.model
+    rest = without(model, entry.effect)
 
     def change(r: RecordRows) -> Array:
         o = r.observation

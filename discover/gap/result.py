@@ -15,6 +15,26 @@ Interval = tuple[float, float]
 
 
 @dataclass(frozen=True)
+class CorrectedCurve:
+    """Curves of added effects that their formulas do not follow."""
+
+    effects: tuple[str, ...]
+    """Whose: once for each term that was added to it."""
+    gap: float
+    """Percent by the formulas alone, fitted records."""
+    unseen: float | None
+    """Likewise, on records that were not fitted."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            "effects": list(self.effects),
+            "gap_by_formula_percent": self.gap,
+            "held_out_by_formula_percent": self.unseen,
+        }
+
+
+@dataclass(frozen=True)
 class NamedEffect:
     """One round."""
 
@@ -40,9 +60,12 @@ class NamedEffect:
     """Likewise, on records that were not fitted; None where there is one record only."""
     dropped: tuple[str, ...]
     """Earlier effects that it made superfluous."""
+    corrected: CorrectedCurve | None = None
+    """Where `gap` after it is not by the formula."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document's entry."""
+        corrected = {} if self.corrected is None else {"corrected": self.corrected.to_dict()}
         return {
             "effect": self.effect,
             "parameters": self.parameters,
@@ -57,6 +80,7 @@ class NamedEffect:
             "held_out_before_percent": self.unseen[0],
             "held_out_after_percent": self.unseen[1],
             "dropped": list(self.dropped),
+            **corrected,
         }
 
 

@@ -12,8 +12,9 @@ from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline, prepare_baseline
 from discover.gap.figures import added_to, curves, shape_of
 from discover.gap.leftover import leftover_in_words
-from discover.gap.result import Gap, MendedTerm, NamedEffect, RecordGap
-from discover.gap.search import Round, Search, Stage, search
+from discover.gap.result import CorrectedCurve, Gap, MendedTerm, NamedEffect, RecordGap
+from discover.gap.search import Round, Search, search
+from discover.gap.stages import Stage, seen_gap
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import Observation, observe
 from discover.naming.contest import AGREES, UNKNOWN, Contest
@@ -93,12 +94,6 @@ def _observe(campaign: Campaign, jobs: int) -> tuple[Observation, ...]:
     return tuple(Parallel(n_jobs=jobs, prefer="threads")(each))
 
 
-def _seen(baseline: Baseline, stage: Stage) -> float:
-    return pooled(
-        [m for r, m in zip(baseline.rows, stage.misfits, strict=True) if not r.observation.held_out]
-    )
-
-
 def _unseen(stage: Stage) -> float | None:
     return pooled(stage.unseen) if stage.unseen else None
 
@@ -107,13 +102,10 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
     rows, start, final = baseline.rows, found.baseline, found.final
     seen = [i for i, r in enumerate(rows) if not r.observation.held_out]
     noise = pooled([final.misfits[i] for i in seen], noise=True)
-    stages = [found.refitted, *(r.stage for r in found.rounds)]
-    rounds = tuple(
-        _named(baseline, entry, stages[i], stages[i + 1]) for i, entry in enumerate(found.rounds)
-    )
+    rounds = tuple(_named(baseline, entry) for entry in found.rounds)
     located = places(rows, start.fit.model)
     left = places(rows, final.fit.model)
-    final_gap = _seen(baseline, final)
+    final_gap = seen_gap(baseline.rows, final)
     verdict = _verdict(found, final_gap, noise)
     unexplained = float(np.sqrt(max(final_gap**2 - noise**2, 0.0)))
     shape = ""
@@ -133,7 +125,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         baseline=baseline.terms,
         fitted=baseline.fitted,
         fixed=baseline.fixed,
-        gap_percent=_seen(baseline, start),
+        gap_percent=seen_gap(baseline.rows, start),
         held_out_gap_percent=_unseen(start),
         noise_percent=noise,
         where=located,
@@ -179,9 +171,9 @@ def _stated(contest: Contest, name: str) -> tuple[tuple[str, float], ...]:
     return tuple(stated)
 
 
-def _named(baseline: Baseline, entry: Round, before: Stage, after: Stage) -> NamedEffect:
-    fit = entry.stage.fit
-    index = min(entry.first, len(fit.model.terms) - 1)
+def _named(baseline: Baseline, entry: Round) -> NamedEffect:
+    fit, before, after = entry.stage.fit, entry.before, entry.after
+    index = next(i for i, t in enumerate(fit.model.terms) if t.id == entry.effect)
     term = fit.model.terms[index]
     error = _standard_errors(fit).get(index, 0.0)
     probability = float(entry.contest.probabilities[entry.effect])
@@ -197,9 +189,12 @@ def _named(baseline: Baseline, entry: Round, before: Stage, after: Stage) -> Nam
         indistinguishable=tuple(
             e for e, p in alternatives if p > _EQUAL * probability and e not in (AGREES, UNKNOWN)
         ),
-        gap=(_seen(baseline, before), _seen(baseline, after)),
+        gap=(seen_gap(baseline.rows, before), seen_gap(baseline.rows, after)),
         unseen=(_unseen(before), _unseen(after)),
         dropped=entry.dropped,
+        corrected=None if entry.corrected is None else CorrectedCurve(
+            entry.corrected.effects, seen_gap(baseline.rows, entry.stage), _unseen(entry.stage)
+        ),
     )
 
 
@@ -278,7 +273,7 @@ def _findings(
                 )
             )
     if found.refitted is not found.baseline:
-        gaps = _seen(baseline, found.baseline), _seen(baseline, found.refitted)
+        gaps = seen_gap(baseline.rows, found.baseline), seen_gap(baseline.rows, found.refitted)
         result.append(
             Finding(
                 "note",
@@ -302,7 +297,7 @@ def _findings(
                         f" {entry.effect} and dropped.")
             )
     ended = found.last.ranked[0]
-    over = _seen(baseline, found.final) / max(noise, 1e-300)
+    over = seen_gap(baseline.rows, found.final) / max(noise, 1e-300)
     if ended[0] == AGREES and not found.rounds and over > _CLOSED_BY_SHAPES:
         result.append(
             Finding(

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from discover.gap.accuracy import Misfit, misfit, pooled
+from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline
+from discover.gap.correction import Correction, corrected, with_member
+from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
 from discover.naming.contest import AGREES, UNKNOWN, Contest, run_contest
-from discover.naming.fit import (
-    ModelFit,
-    UnitRows,
-    fit_model,
-    free_parameters,
-    whole_model,
-)
-from discover.naming.forces import model_force
+from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.refine import extended, refine
+from discover.naming.restart import restarted
 from discover.naming.rows import RecordRows
-from models.constitutive import ForceModel
+from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 
 MOST_ROUNDS = 6
@@ -29,24 +25,12 @@ _JOINT_DOUBT = 0.1  # likewise of what moves the device otherwise: contact and l
 # Of one form only: they leave no doubt of shape.
 _EXACT = ("inertia", "viscous-damping", "stiffness", "force-offset", "time-delay")
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
+_NOTICED = 0.005  # of the gap, that a further effect has to close
 _CLEARLY = 0.1  # of the mean square relative gap
+_MOST_MEMBERS = 4  # that are added to the curves of effects
+_CLEARER = 0.99  # of a gap, below which another kind of delay is preferred
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
-_FOLDS = 16
-_LEFT_OUT_STEPS = 3
-_LEFT_OUT_ENOUGH = 0.01
 _FEWEST = 20.0  # of chi-square, likewise
-
-
-@dataclass(frozen=True)
-class Stage:
-    """A model on all records: before the first round, or after one."""
-
-    fit: ModelFit
-    """On the fitted records."""
-    misfits: tuple[Misfit, ...]
-    """Of every record, by the fitted model."""
-    unseen: tuple[Misfit, ...]
-    """Of the records that were not fitted: the held-out ones, or each left out in turn."""
 
 
 @dataclass(frozen=True)
@@ -55,14 +39,21 @@ class Round:
 
     effect: str
     """What was added."""
-    first: int
-    """Index of its first term in the model."""
     contest: Contest
     """That named it."""
+    before: Stage
+    """Before it."""
     stage: Stage
-    """After it."""
+    """With its formula."""
     dropped: tuple[str, ...] = ()
     """Effects of earlier rounds that it made superfluous."""
+    corrected: Correction | None = None
+    """Of the curves of all that was added so far, where formulas do not follow them."""
+
+    @property
+    def after(self) -> Stage:
+        """The stage that the next round starts from."""
+        return self.stage if self.corrected is None else self.corrected.stage
 
 
 @dataclass(frozen=True)
@@ -83,41 +74,7 @@ class Search:
     @property
     def final(self) -> Stage:
         """The last stage."""
-        return self.rounds[-1].stage if self.rounds else self.refitted
-
-
-def stage(rows: Sequence[RecordRows], fit: ModelFit) -> Stage:
-    """Return what a fitted model makes of every record."""
-    found = tuple(_misfit(r, fit.model) for r in rows)
-    held = tuple(m for r, m in zip(rows, found, strict=True) if r.observation.held_out)
-    return Stage(fit, found, held or _left_out(rows, fit))
-
-
-def _misfit(rows: RecordRows, model: ForceModel) -> Misfit:
-    return misfit(rows.observation, model_force(rows.observation, whole_model(rows, model)))
-
-
-def _left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
-    """Return each record's misfit by the model fitted to the others.
-
-    Of more than sixteen records several are left out at once.
-    """
-    if len(rows) < 2:
-        return ()
-    if not fit.parameters:
-        return tuple(_misfit(r, fit.model) for r in rows)
-    units = UnitRows()
-    found: dict[int, Misfit] = {}
-    folds = min(len(rows), _FOLDS)
-    for fold in range(folds):
-        rest = [r for i, r in enumerate(rows) if i % folds != fold]
-        refit = fit_model(
-            rest, fit.model, fit.parameters, iterations=_LEFT_OUT_STEPS, enough=_LEFT_OUT_ENOUGH,
-            units=units, exact=False,
-        )
-        for i in range(fold, len(rows), folds):
-            found[i] = _misfit(rows[i], refit.model)
-    return tuple(found[i] for i in range(len(rows)))
+        return self.rounds[-1].after if self.rounds else self.refitted
 
 
 def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUNDS) -> Search:
@@ -139,51 +96,84 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     fit = fit_model(fitted, baseline.model, free_parameters(baseline.model))
     moved = fixed.chi2 - fit.chi2 > _MOVED * fit.residual.size
     refitted = stage(rows, fit) if moved else start
-    now = refitted
-    names: list[tuple[str, int]] = []
+    first = refitted if moved else replace(start, fit=fit)
     rounds: list[Round] = []
     tried: set[str] = set()
-    doubt = 0.0
+    doubt, members = 0.0, 0
     while True:
-        present = {t.id for t in fit.model.terms}
+        now = rounds[-1].after if rounds else first
+        present = {t.id for t in now.fit.model.terms}
         open_effects = [e for e in effects if e not in present and e not in tried]
-        contest, fits = _contest(fitted, fit, open_effects, doubt)
-        name = contest.ranked[0][0]
-        ended = name in (AGREES, UNKNOWN) or len(rounds) >= most
-        if ended or _within_doubt(rows, rounds, refitted):
-            return Search(start, refitted, tuple(rounds), contest)
-        mended = _mended(fitted, fit, contest, name, fits.get(name))
-        gained = fit.chi2 - mended.chi2
-        if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
-            return Search(start, refitted, tuple(rounds), _refused(rows, now, contest, name))
-        doubt += _doubt(name) ** 2 * gained
-        first = len(fit.model.terms)
-        mended, dropped, names = _without_superfluous(fitted, mended, names)
-        first -= len(dropped)
-        tried |= set(dropped)
-        names.append((name, first))
-        fit = mended
-        after = stage(rows, fit)
-        if not _helps(rows, now, after):
-            contest = _refused(rows, now, contest, name)
-            return Search(start, refitted, tuple(rounds), contest, name)
-        now = after
-        rounds.append(Round(name, first, contest, after, dropped))
+        found = _next(rows, fitted, now, _Open(open_effects, doubt, rounds, len(rounds) < most))
+        if found.added is not None:
+            doubt += _doubt(found.added.effect) ** 2 * found.gained
+            tried |= set(found.added.dropped)
+            rounds.append(found.added)
+            continue
+        added = [r.effect for r in rounds]
+        better = corrected(rows, fitted, now, added, most=_MOST_MEMBERS - members)
+        if better is None:
+            return Search(start, refitted, tuple(rounds), found.contest, found.rejected)
+        members += len(better.effects)
+        before = rounds[-1].corrected
+        if before is not None:
+            better = replace(better, effects=(*before.effects, *better.effects))
+        rounds[-1] = replace(rounds[-1], corrected=better)
 
 
-def _within_doubt(
-    rows: Sequence[RecordRows], rounds: Sequence[Round], before: Stage
-) -> bool:
+@dataclass(frozen=True)
+class _Open:
+    """What a round may still do."""
+
+    effects: Sequence[str]
+    doubt: float
+    rounds: Sequence[Round]
+    more: bool
+
+
+@dataclass(frozen=True)
+class _Next:
+    """A round, or what ended the search."""
+
+    contest: Contest
+    added: Round | None = None
+    gained: float = 0.0
+    rejected: str | None = None
+
+
+def _next(
+    rows: Sequence[RecordRows], fitted: Sequence[RecordRows], now: Stage, left: _Open
+) -> _Next:
+    """Return the next round: the contest, and the effect that it names, added."""
+    contest, fits = _contest(fitted, now.fit, left.effects, left.doubt)
+    name = contest.ranked[0][0]
+    if name in (AGREES, UNKNOWN) or not left.more or _within_doubt(rows, left.rounds):
+        return _Next(contest)
+    mended = _mended(fitted, now.fit, contest, name, fits.get(name))
+    gained = now.fit.chi2 - mended.chi2
+    if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
+        return _Next(_refused(rows, now, contest, name))
+    same = with_member(fitted, now.fit, [r.effect for r in left.rounds])
+    if same is not None and same[1].chi2 < mended.chi2:
+        return _Next(contest.without(name))
+    earlier = [r.effect for r in left.rounds if r.effect in {t.id for t in mended.model.terms}]
+    mended, dropped = _without_superfluous(fitted, mended, earlier)
+    after = stage(rows, mended)
+    if not _helps(rows, now, after, _NOTICED if left.rounds else 0.0):
+        return _Next(_refused(rows, now, contest, name), rejected=name)
+    return _Next(contest, Round(name, contest, now, after, dropped), gained)
+
+
+def _within_doubt(rows: Sequence[RecordRows], rounds: Sequence[Round]) -> bool:
     """Tell whether what is left is no more than the shapes of what was added may be wrong by."""
     if not rounds:
         return False
-    now = rounds[-1].stage
+    now = rounds[-1].after
     seen = [m for r, m in zip(rows, now.misfits, strict=True) if not r.observation.held_out]
-    left = _pooled(rows, now) ** 2 - pooled(seen, noise=True) ** 2
-    stages = [before, *(r.stage for r in rounds)]
+    left = seen_gap(rows, now) ** 2 - pooled(seen, noise=True) ** 2
     tolerated = sum(
-        _doubt(r.effect) ** 2 * (_pooled(rows, was) ** 2 - _pooled(rows, r.stage) ** 2)
-        for was, r in zip(stages, rounds, strict=False)
+        _doubt(r.effect) ** 2 * (seen_gap(rows, r.before) ** 2 - seen_gap(rows, r.after) ** 2)
+        for r in rounds
     )
     return left < tolerated
 
@@ -196,13 +186,15 @@ def _doubt(name: str) -> float:
     return _JOINT_DOUBT if joint else _SHAPE_DOUBT
 
 
-def _helps(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
+def _helps(
+    rows: Sequence[RecordRows], before: Stage, after: Stage, least: float
+) -> bool:
     """Tell whether the gap falls: pooled in N, or clearly with every record counting alike.
 
     Where more than one effect is missing, the first may close the quiet records' gaps at the cost
-    of the loud ones'.
+    of the loud ones'. Pooled it has to fall by the share `least`.
     """
-    if _pooled(rows, after) <= _pooled(rows, before):
+    if seen_gap(rows, after) <= (1.0 - least) * seen_gap(rows, before):
         return True
     was, now = (
         sum(
@@ -226,12 +218,6 @@ def _refused(rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str)
         if not r.observation.held_out
     )
     return contest.without(name) if beyond else contest
-
-
-def _pooled(rows: Sequence[RecordRows], at: Stage) -> float:
-    """Return the gap of the fitted records, %."""
-    found = zip(rows, at.misfits, strict=True)
-    return pooled([m for r, m in found if not r.observation.held_out])
 
 
 def _contest(
@@ -259,21 +245,35 @@ def _mended(
     """Return the fit with an effect added, from where the contest's own refinement stopped."""
     entry = next(e for e in contest.entries if e.effects and e.effects[0] == name)
     model = extended(fit.model, entry) if begun is None else begun.model
-    return fit_model(rows, model, free_parameters(model))
+    mended = fit_model(rows, model, free_parameters(model))
+    if name == "time-delay":
+        return _aligned(rows, mended)
+    return restarted(rows, mended, len(mended.model.terms) - 1)
+
+
+def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+    """Return the fit with the delay made as its samples tell: its lines hardly do."""
+    best, gap = fit, _CLEARER * pooled([record_misfit(r, fit.model) for r in rows])
+    *others, delay = fit.model.terms
+    for degree in (1.0, 3.0):
+        late = FittedTerm(delay.id, delay.coefficient, {"resampled": degree})
+        model = ForceModel((*others, late), fit.model.name)
+        trial = fit_model(rows, model, free_parameters(model))
+        now = pooled([record_misfit(r, trial.model) for r in rows])
+        if now < gap:
+            best, gap = trial, now
+    return best
 
 
 def _without_superfluous(
-    rows: Sequence[RecordRows], fit: ModelFit, names: list[tuple[str, int]]
-) -> tuple[ModelFit, tuple[str, ...], list[tuple[str, int]]]:
+    rows: Sequence[RecordRows], fit: ModelFit, names: Sequence[str]
+) -> tuple[ModelFit, tuple[str, ...]]:
     """Return the fit without earlier effects that the newest made worth next to nothing."""
     dropped: list[str] = []
-    kept = list(names)
-    for name, first in names[::-1]:
-        terms = [t for i, t in enumerate(fit.model.terms) if i != first]
-        less = ForceModel(tuple(terms), fit.model.name)
+    for name in names[::-1]:
+        less = without(fit.model, name)
         trial = fit_model(rows, less, free_parameters(less), iterations=4)
         if trial.chi2 - fit.chi2 < 2.0 * _SUPERFLUOUS:
             fit = trial
             dropped.append(name)
-            kept = [(n, f - (f > first)) for n, f in kept if n != name]
-    return fit, tuple(dropped), kept
+    return fit, tuple(dropped)

@@ -29,11 +29,17 @@ def _coulomb(x: str, v: str, a: str, shape: Mapping[str, float]) -> str:
     return f"tanh({v}/{transition:.4g})" if transition else f"sign({v})"
 
 
+def _asymmetric(x: str, v: str, a: str, shape: Mapping[str, float]) -> str:
+    power = shape.get("power", 1.0)
+    side = {1.0: f" ({v}>0)", -1.0: f" ({v}<0)"}.get(shape.get("side", 0.0), "")
+    return (f"|{v}|" if power == 1.0 else f"|{v}|^{power:.4g}") + side
+
+
 _NAMES: dict[str, Namer] = {
     "inertia": lambda x, v, a, shape: a,
     "viscous-damping": lambda x, v, a, shape: v,
     "quadratic-damping": lambda x, v, a, shape: f"{v}|{v}|",
-    "asymmetric-damping": lambda x, v, a, shape: f"|{v}|",
+    "asymmetric-damping": _asymmetric,
     "stiffness": lambda x, v, a, shape: x,
     "cubic-stiffness": lambda x, v, a, shape: f"{x}^3",
     "force-offset": lambda x, v, a, shape: "1",

@@ -109,6 +109,15 @@ def _power(scales: Scales) -> list[Variant]:
     return [_one("power-law-damping", 1, exponent=p) for p in grid]
 
 
+def _asymmetric(scales: Scales) -> list[Variant]:
+    name = "asymmetric-damping"
+    others = [
+        _one(name, 2, power=power, side=side) for power in (0.5, 1.5, 2.0, 3.0)
+        for side in (1.0, -1.0)
+    ]
+    return [_one(name, 0, power=1.0, side=0.0), *others]
+
+
 def _coulomb(scales: Scales) -> list[Variant]:
     speeds = [0.0, *np.geomspace(0.002, 0.25, 7) * scales.speed]
     lengths = np.geomspace(1e-4, 0.02, 6) * scales.displacement
@@ -274,6 +283,7 @@ def _cubic(scales: Scales) -> list[Variant]:
 
 
 _MAKERS = {
+    "asymmetric-damping": _asymmetric,
     "power-law-damping": _power,
     "coulomb-friction": _coulomb,
     "fractional-derivative": _fractional,

@@ -149,7 +149,8 @@ def _reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
     return np.concatenate(blocks, axis=1)
 
 
-def _freed(columns: Array, tangents: Array) -> Array:
+def without_span(columns: Array, tangents: Array) -> Array:
+    """Return what of `columns` (C, R) the `tangents` (P, R) do not span."""
     scale = np.linalg.norm(tangents, axis=1)
     used = tangents[scale > 0.0] / scale[scale > 0.0, None]
     if not used.size:
@@ -205,8 +206,8 @@ def run_contest(
     with np.errstate(over="ignore", invalid="ignore"):
         raw[~np.isfinite(np.sum(raw**2, axis=1))] = 0.0  # overflows: no candidate
     tangents = np.concatenate([fit.tangents, _reversal_doubt(rows, fit.model)])
-    freed = _freed(raw, tangents)
-    target = _freed(fit.residual[None], tangents)[0]
+    freed = without_span(raw, tangents)
+    target = without_span(fit.residual[None], tangents)[0]
     chi2 = float(target @ target)
 
     def evidence(chi2: float, parameters: int) -> float:
@@ -387,7 +388,7 @@ def reweighed(
             continue
         found = fits[e.effects[0]]
         tangents = np.concatenate([found.tangents, _reversal_doubt(rows, found.model)])
-        left = _freed(found.residual[None], tangents)[0]
+        left = without_span(found.residual[None], tangents)[0]
         chi2 = min(float(left @ left), e.chi2)
         spent = sum(len(v.parts) + v.shapes for v in e.variants)
         value = -0.5 * cost(chi2 - contest.noise, informative, contest.tolerated)

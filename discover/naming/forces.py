@@ -12,6 +12,7 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
 from models.terms import Shape, Term
+from models.terms.time_delay import between_samples
 
 DELAY = "time-delay"
 
@@ -37,9 +38,14 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
 
     What has memory is evaluated over one steady cycle of a sine test; the rest at the samples.
     """
-    delay = sum(t.coefficient for t in model.terms if t.id == DELAY)
-    if delay and observation.late is not None:
+    delays = [t for t in model.terms if t.id == DELAY]
+    if delays and observation.late is not None:
         rest = ForceModel(tuple(t for t in model.terms if t.id != DELAY))
+        delay = sum(t.coefficient for t in delays)
+        degree = int(max(t.shape.get("resampled", 0.0) for t in delays))
+        if degree:
+            force = model_force(observation, rest)
+            return between_samples(force, observation.motion.time, delay, degree)
         return model_force(replace(observation, motion=observation.late(delay)), rest)
     motion, cycle = observation.motion, observation.cycle
     if cycle is None or not any(needs_cycle(t.term, t.shape) for t in model.terms):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -70,8 +71,20 @@ def _round(entry: Mapping[str, Any]) -> str:
         text += f", or {listed(others, last='or')}"
     return (
         f"{text}; gap {percent(entry['gap_before_percent'])} to"
-        f" {percent(entry['gap_after_percent'])}"
+        f" {percent(entry['gap_after_percent'])}{_corrected(entry.get('corrected'))}"
     )
+
+
+def _corrected(entry: Mapping[str, Any] | None) -> str:
+    """Return how far formulas alone came, where the curves of effects were corrected."""
+    if entry is None:
+        return ""
+    counts = Counter(str(e) for e in entry["effects"])
+    terms = [
+        f"{number} more {'term' if number == 1 else 'terms'} of {term_name(name)}"
+        for name, number in counts.items()
+    ]
+    return f" ({percent(entry['gap_by_formula_percent'])} by formula, without {listed(terms)})"
 
 
 def gap_figures(document: Mapping[str, Any], data: GapFigureData) -> dict[str, str]:

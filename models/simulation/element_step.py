@@ -39,8 +39,11 @@ def curved_force(v, curves, start, stop):  # type: ignore[no-untyped-def] # noqa
             force += c * th
             slope += c * (1.0 - th * th) / p
         elif code == ASYMMETRIC:
-            force += c * abs(v)
-            slope += c if v >= 0.0 else -c
+            side = curves[i, 3]
+            if side * v >= 0.0:
+                power = c * abs(v) ** p * (side if side != 0.0 else 1.0)
+                force += power
+                slope += p * power / v if v != 0.0 else (c if p == 1.0 else 0.0)
         elif code == END_STOP:
             continue
         elif p == 2.0:

@@ -149,7 +149,7 @@ def _place(
     elif fitted.id == "power-law-damping":
         curves.append((POWER, value, shape["exponent"], 0.0))
     elif fitted.id == "asymmetric-damping":
-        curves.append((ASYMMETRIC, value, 0.0, 0.0))
+        curves.append((ASYMMETRIC, value, shape["power"], shape["side"]))
     elif fitted.id == "end-stop":
         # An entry for each end; the gap's sign says which.
         for side in (1.0, -1.0):

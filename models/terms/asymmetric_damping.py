@@ -4,18 +4,29 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Shape, Term
+from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return |v|, m/s: half the difference of the two directions' viscous forces."""
-    return np.abs(motion.velocity)
+    """Return |v| to a `power`: half the difference of the two directions' forces.
+
+    With power 1 both are viscous. With `side` 1 or -1 the force is there in extension or in
+    compression only, and resists.
+    """
+    side, power = shape.get("side", 0.0), shape.get("power", 1.0)
+    if side == 0.0:
+        return np.asarray(np.abs(motion.velocity) ** power)
+    return np.asarray(side * np.maximum(side * motion.velocity, 0.0) ** power)
 
 
 TERM = Term(
     "asymmetric-damping",
-    "N s/m",
-    "c times |v|: viscous damping c_v + c in extension, c_v - c in compression",
+    "N s^{power}/m^{power}",
+    "c times |v|: damping c_v + c in extension, c_v - c in compression; or a power of v one way",
     column,
+    parameters=(
+        Parameter("power", 0.25, 4.0, 1.0, ""),
+        Parameter("side", -1.0, 1.0, 0.0, ""),
+    ),
     mistaken_for=("force-offset", "cavitation"),
 )

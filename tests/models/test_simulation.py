@@ -276,6 +276,7 @@ def every_effect() -> ForceModel:
             FittedTerm("quadratic-damping", 0.2),
             FittedTerm("power-law-damping", 0.1, {"exponent": 1.75}),
             FittedTerm("asymmetric-damping", 0.03),
+            FittedTerm("asymmetric-damping", 0.02, {"power": 1.5, "side": -1.0}),
             FittedTerm("stiffness", 0.3),
             FittedTerm("cubic-stiffness", 0.5),
             FittedTerm("end-stop", 3.0, {"gap": 0.3, "exponent": 1.5, "side": 0.0}),

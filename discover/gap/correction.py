@@ -1,0 +1,144 @@
+"""The curve of an added effect corrected, where it is not quite its formula's.
+
+A measured effect follows no formula exactly. What it leaves is looked for along the effect's own
+coordinate: a further member of its family (another speed, power, gap or time) beside the one that
+was named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from discover.gap.accuracy import pooled
+from discover.gap.stages import Stage, left_out, stage
+from discover.naming.candidates import Part, Variant, scales_of, variants
+from discover.naming.contest import candidate_columns, without_span
+from discover.naming.fit import ModelFit, fit_model, free_parameters
+from discover.naming.rows import RecordRows
+from models.constitutive import FittedTerm, ForceModel
+from models.terms import TERMS
+
+# Simulated as a whole: there is no family of shapes that could stand side by side.
+_WHOLE = ("backlash", "cavitation", "series-compliance", "time-delay")
+_POWERS = {
+    "asymmetric-damping": (0.5, 1.0, 1.5, 2.0, 3.0),
+    "position-dependent-friction": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0),
+}
+_SIDES = (0.0, 1.0, -1.0)
+_CLOSE = 1.1  # times the noise floor, up to which no curve is corrected
+_WORTH = 0.05  # of the gap of records that were left out, that a correction has to close
+_LEAST = 0.02  # of the misfit, that a member has to explain
+_FEWEST = 20.0  # of chi-square, likewise
+_APART = 1e-4  # of a member's own square, that it has to add to what the model spans
+
+
+@dataclass(frozen=True)
+class Correction:
+    """Curves that differ from their formulas."""
+
+    effects: tuple[str, ...]
+    """Whose: once for each member that was added beside its formula."""
+    stage: Stage
+    """After it."""
+
+
+def corrected(
+    rows: Sequence[RecordRows],
+    fitted: Sequence[RecordRows],
+    now: Stage,
+    effects: Sequence[str],
+    *,
+    most: int,
+) -> Correction | None:
+    """Return the curves of the added effects corrected by further members of their families.
+
+    Parameters
+    ----------
+    rows : sequence of RecordRows
+        All records.
+    fitted : sequence of RecordRows
+        Those that are not held out: each is left out in turn, and has to be predicted better.
+    now : Stage
+        With the effects' formulas.
+    effects : sequence of str
+        Ids that were added.
+    most : int
+        Members at most.
+
+    Returns
+    -------
+    Correction or None
+        None where nothing is added or left, or no member helps.
+    """
+    seen = [m for r, m in zip(rows, now.misfits, strict=True) if not r.observation.held_out]
+    floor = pooled(seen, noise=True)
+    marked = len(fitted) < len(rows)
+    unseen = left_out(fitted, now.fit) if marked else now.unseen
+    if not effects or not unseen:
+        return None
+    best, nearest = None, pooled(unseen)
+    fit, names = now.fit, list[str]()
+    while len(names) < most and nearest > _CLOSE * floor:
+        found = with_member(fitted, fit, effects)
+        if found is None:
+            break
+        name, trial = found
+        excess = fit.chi2 - fit.residual.size
+        if fit.chi2 - trial.chi2 < max(_LEAST * excess, _FEWEST):
+            break
+        fit = trial
+        names.append(name)
+        gap = pooled(left_out(fitted, fit))
+        if gap < (1.0 - _WORTH) * nearest:
+            best, nearest = (tuple(names), fit), gap
+    if best is None:
+        return None
+    return Correction(best[0], stage(rows, best[1]))
+
+
+def with_member(
+    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str]
+) -> tuple[str, ModelFit] | None:
+    """Return the fit with that member of the effects' families that explains most, and whose."""
+    members = [m for e in effects if e not in _WHOLE for m in _family(rows, fit.model, e)]
+    if not members:
+        return None
+    raw = candidate_columns(rows, fit.model, [Variant(m.id, (m,), 0) for m in members])
+    with np.errstate(over="ignore", invalid="ignore"):
+        raw[~np.isfinite(np.sum(raw**2, axis=1))] = 0.0
+    apart = without_span(raw, fit.tangents)
+    power, along = np.sum(apart**2, axis=1), apart @ fit.residual
+    seen = power > _APART * np.sum(raw**2, axis=1)
+    gain = np.where(seen, along**2 / np.maximum(power, 1e-300), 0.0)
+    place = int(np.argmax(gain))
+    if gain[place] <= 0.0:
+        return None
+    chosen = members[place]
+    term = FittedTerm(chosen.id, float(along[place] / power[place]), chosen.shape)
+    model = ForceModel((*fit.model.terms, term), fit.model.name)
+    return chosen.id, fit_model(rows, model, free_parameters(model))
+
+
+def _family(rows: Sequence[RecordRows], model: ForceModel, effect: str) -> list[Part]:
+    """Return the members of an effect's family that the model does not hold."""
+    own = [dict(t.shape) for t in model.terms if t.id == effect]
+    if not own or not own[0]:
+        return []
+    if effect in _POWERS:
+        sides = _SIDES if "side" in own[0] else (None,)
+        parts = [
+            Part(effect, {**own[0], "power": power, **({} if side is None else {"side": side})})
+            for power in _POWERS[effect] for side in sides
+        ]
+    else:
+        scales = scales_of([r.observation for r in rows])
+        parts = [p for v in variants(effect, scales) for p in v.parts]
+    unique: dict[tuple[tuple[str, float], ...], Part] = {}
+    for p in parts:
+        shape = TERMS[effect].shape(p.shape)
+        if shape not in own:
+            unique.setdefault(tuple(shape.items()), Part(effect, shape, p.probe))
+    return list(unique.values())

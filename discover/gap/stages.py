@@ -1,0 +1,74 @@
+"""A model on all records: its misfit on those that were fitted, and on those that were not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from discover.gap.accuracy import Misfit, misfit, pooled
+from discover.naming.fit import ModelFit, UnitRows, fit_model, whole_model
+from discover.naming.forces import model_force
+from discover.naming.rows import RecordRows
+from models.constitutive import ForceModel
+
+_FOLDS = 16
+_LEFT_OUT_STEPS = 3
+_LEFT_OUT_ENOUGH = 0.01
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A model on all records: before the first round, or after one."""
+
+    fit: ModelFit
+    """On the fitted records."""
+    misfits: tuple[Misfit, ...]
+    """Of every record, by the fitted model."""
+    unseen: tuple[Misfit, ...]
+    """Of the records that were not fitted: the held-out ones, or each left out in turn."""
+
+
+def stage(rows: Sequence[RecordRows], fit: ModelFit) -> Stage:
+    """Return what a fitted model makes of every record."""
+    found = tuple(record_misfit(r, fit.model) for r in rows)
+    held = tuple(m for r, m in zip(rows, found, strict=True) if r.observation.held_out)
+    return Stage(fit, found, held or left_out(rows, fit))
+
+
+def record_misfit(rows: RecordRows, model: ForceModel) -> Misfit:
+    """Return one record's misfit by a model fitted to it or to others."""
+    return misfit(rows.observation, model_force(rows.observation, whole_model(rows, model)))
+
+
+def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
+    """Return each record's misfit by the model fitted to the others.
+
+    Of more than sixteen records several are left out at once.
+    """
+    if len(rows) < 2:
+        return ()
+    if not fit.parameters:
+        return tuple(record_misfit(r, fit.model) for r in rows)
+    units = UnitRows()
+    found: dict[int, Misfit] = {}
+    folds = min(len(rows), _FOLDS)
+    for fold in range(folds):
+        rest = [r for i, r in enumerate(rows) if i % folds != fold]
+        refit = fit_model(
+            rest, fit.model, fit.parameters, iterations=_LEFT_OUT_STEPS, enough=_LEFT_OUT_ENOUGH,
+            units=units, exact=False,
+        )
+        for i in range(fold, len(rows), folds):
+            found[i] = record_misfit(rows[i], refit.model)
+    return tuple(found[i] for i in range(len(rows)))
+
+
+def seen_gap(rows: Sequence[RecordRows], at: Stage) -> float:
+    """Return the gap of the fitted records, %."""
+    found = zip(rows, at.misfits, strict=True)
+    return pooled([m for r, m in found if not r.observation.held_out])
+
+
+def without(model: ForceModel, effect: str) -> ForceModel:
+    """Return the model without an effect."""
+    return ForceModel(tuple(t for t in model.terms if t.id != effect), model.name)

@@ -1,0 +1,86 @@
+"""Effects whose measured curve is not their formula's, and delays made in more than one way."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from discover.gap import close_gap
+from tests.discover.gap_data import campaign, device
+
+BASELINE = "fit:inertia,viscous-damping"
+
+
+def blown_off(t, x, v, a):
+    """A relief valve limits what compression adds to the damping."""
+    return device(t, x, v, a) - 60.0 * (1.0 - np.exp(-np.maximum(-v, 0.0) / 0.08))
+
+
+def test_a_curve_that_is_not_the_formula_s_is_corrected():
+    found = close_gap(campaign(blown_off), BASELINE)
+    (first,) = found.rounds
+    assert first.effect == "asymmetric-damping"
+    assert first.corrected is not None
+    assert set(first.corrected.effects) == {"asymmetric-damping"}
+    assert first.corrected.unseen > 1.5 * found.noise_percent
+    assert found.final_held_out_gap_percent < 1.3 * found.noise_percent
+    terms = [t for t in found.to_dict()["mended"] if t["id"] == "asymmetric-damping"]
+    assert len(terms) == 1 + len(first.corrected.effects)
+
+
+def test_damping_that_is_bent_one_way_only_needs_no_second_name():
+    def law(t, x, v, a):
+        return device(t, x, v, a) - 60.0 * (np.maximum(-v, 0.0) / 0.15) ** 1.6
+
+    found = close_gap(campaign(law), BASELINE)
+    (only,) = found.rounds
+    assert only.effect == "asymmetric-damping"
+    assert only.parameters["side"] == -1.0
+    assert found.final_held_out_gap_percent < 1.15 * found.noise_percent
+
+
+def test_a_curve_that_is_the_formula_s_is_left():
+    found = close_gap(
+        campaign(lambda t, x, v, a: device(t, x, v, a) + 150.0 * np.abs(v)), BASELINE
+    )
+    (only,) = found.rounds
+    assert only.effect == "asymmetric-damping"
+    assert only.corrected is None
+    assert only.coefficient == pytest.approx(150.0, rel=0.05)
+
+
+def test_the_formula_s_coefficient_is_kept_where_its_curve_is_corrected():
+    """The further terms share the force out anew; what is stated stays readable."""
+    found = close_gap(campaign(blown_off), BASELINE)
+    first = found.rounds[0]
+    assert first.parameters == {"power": 1.0, "side": 0.0}
+    assert first.unit == "N s/m"
+    assert first.interval[0] < first.coefficient < first.interval[1]
+    assert first.gap[1] < first.corrected.gap
+
+
+@pytest.mark.parametrize("made", ["sampled later", "by lines", "by a spline"])
+def test_a_delay_closes_however_it_was_made(made):
+    """Aligning samples rounds the jump of friction, or rings beside it; sampling later does not."""
+    late = 1.3e-3
+
+    def rubbing(t, x, v, a):
+        return device(t, x, v, a) + 60.0 * np.tanh(v / 1e-4)
+
+    def law(t, x, v, a):
+        force = rubbing(t, x, v, a)
+        if made == "by lines":
+            return np.interp(t - late, t, force)
+        if made == "by a spline":
+            return CubicSpline(t, force)(t - late)
+        omega = (np.sum(a**2) / np.sum(x**2)) ** 0.25
+        return rubbing(
+            t - late,
+            x * np.cos(omega * late) - v / omega * np.sin(omega * late),
+            v * np.cos(omega * late) + x * omega * np.sin(omega * late),
+            a * np.cos(omega * late) + v * omega * np.sin(omega * late),
+        )
+
+    found = close_gap(campaign(law), f"{BASELINE},coulomb-friction")
+    assert found.rounds[0].effect == "time-delay"
+    assert found.rounds[0].coefficient == pytest.approx(late, rel=0.1)
+    assert found.final_held_out_gap_percent < 1.3 * found.noise_percent
