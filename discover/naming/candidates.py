@@ -249,7 +249,14 @@ def _gain(scales: Scales) -> list[Variant]:
     between = np.sqrt(peaks[1:] * peaks[:-1])[peaks[1:] > 1.05 * peaks[:-1]]
     chosen = between[:: max(between.size // 16, 1)]
     uniform = [_one("sensor-gain", 0, 1e-3, threshold=0.0, side=1.0)]
-    return uniform + [_one("sensor-gain", 1, 1e-3, threshold=float(t), side=1.0) for t in chosen]
+    ranges = [_one("sensor-gain", 1, 1e-3, threshold=float(t), side=1.0) for t in chosen]
+    grows = [_one("sensor-gain", 1, 1e-3, threshold=scales.force, form=1.0)]
+    one_way = [_one("sensor-gain", 1, 1e-3, side=1.0, form=2.0)]
+    slow = [
+        _one("sensor-gain", 1, 1e-3, corner=float(k * scales.omega), form=3.0)
+        for k in (0.1, 0.3, 1.0, 3.0, 10.0)
+    ]
+    return uniform + ranges + grows + one_way + slow
 
 
 def _clipping(scales: Scales) -> list[Variant]:
