@@ -166,10 +166,10 @@ def _compliance(scales: Scales) -> list[Variant]:
     aired = [
         _one(
             "series-compliance", 2, probe=float(c), loss=0.1, inside=1.0,
-            hardening=h * scales.force, side=side,
+            hardening=h * scales.force, gas=gas, side=side,
         )
         for c in springs[2::2]
-        for h in (0.05, 0.3)
+        for h, gas in ((0.1, 0.3), (0.1, 0.7), (0.5, 0.6), (2.0, 0.9))
         for side in (0.0, 1.0, -1.0)
     ]
     return plain + aired

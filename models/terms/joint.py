@@ -20,7 +20,6 @@ _SETTLED = 5e-4
 _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle within one
 _LEAST_INNER, _MOST_INNER = 4, 60
 _MOST_STEPS = 1_000_000  # of one pass: a stiffer joint is as stiff as they can follow
-_HARDEST = 8.0
 _RIDGE = 1e-12
 _LEAST_DRY = 1e-6  # of the force's root mean square
 _ADDED_MASS = 1e-3  # of what would make the whole force: a damper's own time can't be stepped
@@ -47,7 +46,9 @@ class Joint:
     refilled: bool = False
     """True where what is lost at a limit is made up at once, as by a valve: the joint slips."""
     hardening: float = 0.0
-    """N of force over which the spring grows twice as stiff; 0 for a linear one."""
+    """N of force that squeezes gas in the spring to half its volume; 0 for a linear one."""
+    gas: float = 0.0
+    """Share of the unloaded spring's compliance that is the gas's, by Boyle's law."""
     hardens: float = 0.0
     """1 or -1 where it does so only under positive or negative force, 0 where under both."""
     fluid_only: bool = False
@@ -147,6 +148,9 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     carried_along = _ADDED_MASS * float(np.std(rigid)) / float(np.std(motion.acceleration))
     mass = max(mass, carried_along, resistance * motion.step / most)
     fastest = max(float(np.sqrt(joint.stiffness / mass)), resistance / mass)
+    if joint.hardening > 0.0:
+        squeezed = 1.0 + float(np.abs(rigid).max()) / joint.hardening
+        fastest /= np.sqrt(1.0 - joint.gas + joint.gas / squeezed**2)
     inner = int(np.clip(np.ceil(fastest * motion.step / _STEP), 1, most))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
     damping = 2.0 * joint.loss * np.sqrt(stiffness * mass)
@@ -154,7 +158,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, stiffness,
         damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.hardening,
-        joint.hardens, passes,
+        joint.gas, joint.hardens, passes,
     )
     return np.asarray(force + carried - rigid)
 
@@ -163,7 +167,8 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, stiffness: float, damping: float, half: float, lower: float,
-    upper: float, refilled: int, hardening: float, hardens: float, passes: int,
+    upper: float, refilled: int, hardening: float, gas: float, hardens: float,
+    passes: int,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps."""
     size = x.size
@@ -193,14 +198,21 @@ def _step(
                 deepest = max(deepest, abs(depth))
                 now = speed + 0.5 * h * rate  # half a step on: there the place is known
                 force = 0.0
-                if depth > half:
+                if hardening > 0.0 and (hardens == 0.0 or hardens * depth > 0.0):
+                    # depth = force ((1 - gas) + gas hardening / (hardening + force)) / stiffness
+                    stiff = stiffness / (1.0 - gas)
+                    rest = abs(depth) * stiff - hardening / (1.0 - gas)
+                    force = abs(depth) * stiff * hardening
+                    force = 0.5 * (rest + np.sqrt(rest * rest + 4.0 * force))
+                    softer = 1.0 - gas + gas * (hardening / (hardening + force)) ** 2
+                    force = force if depth > 0.0 else -force
+                    force += damping / np.sqrt(softer) * (pace - now)
+                elif depth > half:
                     force = stiffness * (depth - half) + damping * (pace - now)
                     force = max(force, 0.0) if half > 0.0 else force
                 elif depth < -half:
                     force = stiffness * (depth + half) + damping * (pace - now)
                     force = min(force, 0.0) if half > 0.0 else force
-                if hardening > 0.0 and (hardens == 0.0 or hardens * force > 0.0):
-                    force *= 1.0 + min(abs(force) / hardening, _HARDEST)
                 if refilled == 1 and (force < lower or force > upper):
                     slipped += (force - min(max(force, lower), upper)) / stiffness
                 force = min(max(force, lower), upper)

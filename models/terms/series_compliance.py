@@ -9,8 +9,9 @@ from models.terms.term import ForceOf, Parameter, Shape, Term
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
     """Return the force through a spring of this compliance, stepped in time.
 
-    With `inside` 1 the spring is that of the fluid, and dry friction is beside it. Oil with air
-    in it grows stiffer as force rises over `hardening`, on one `side` or (0) on both.
+    With `inside` 1 the spring is that of the fluid, and dry friction is beside it. Gas in it makes
+    a share `gas` of the unloaded compliance; `hardening` (N) squeezes it to half its volume, on
+    one `side` or (0) on both.
     """
     force = force_of(motion)
     if coefficient <= 0.0:
@@ -19,6 +20,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         1.0 / coefficient,
         shape["loss"],
         hardening=shape["hardening"],
+        gas=shape["gas"],
         hardens=shape["side"],
         fluid_only=shape["inside"] > 0.0,
     )
@@ -35,6 +37,7 @@ TERM = Term(
         Parameter("loss", 0.0, 1.0, 0.05, ""),
         Parameter("inside", 0.0, 1.0, 0.0, ""),
         Parameter("hardening", 0.0, 1e9, 0.0, "N"),
+        Parameter("gas", 0.0, 0.95, 0.0, ""),
         Parameter("side", -1.0, 1.0, 0.0, ""),
     ),
     nonnegative=True,

@@ -156,3 +156,26 @@ def test_an_amplifier_s_corner_attenuates_and_lags_as_a_first_order_filter(perio
     carrier = np.exp(-1j * omega * motion.time)[-2048:]
     ratio = (found[-2048:] @ carrier) / (plain[-2048:] @ carrier)
     assert ratio == pytest.approx(1.0 / (1.0 + 1j * omega / corner), rel=2e-3)
+
+
+@pytest.mark.parametrize(("load", "left"), [(1e-4, 1.0), (1e4, 0.3)])
+def test_gas_in_a_spring_is_soft_unloaded_and_gone_when_squeezed(load, left):
+    """Far below the force that halves the gas the spring is linear, far above only its rest is."""
+    compliance = 1e-5
+    top = float(np.abs(force(*LINEAR)).max())
+    shape = {"loss": 0.02, "hardening": top / load, "gas": 0.7}
+    found = force(*LINEAR, FittedTerm("series-compliance", compliance, shape))
+    device = -200.0 * OMEGA**2 + 1j * OMEGA * 900.0
+    spring = 1.0 / (left * compliance)
+    mount = spring + 1j * OMEGA * 2.0 * 0.02 * np.sqrt(200.0 * spring)
+    expected = line(force(*LINEAR)) / (1.0 + device / mount)
+    assert abs(line(found) - expected) < 0.01 * abs(expected)
+
+
+def test_gas_on_one_side_softens_that_side_only():
+    shape = {"loss": 0.02, "hardening": 300.0, "gas": 0.7, "side": 1.0}
+    found = force(*LINEAR, FittedTerm("series-compliance", 1e-5, shape))
+    mirrored = force(*LINEAR, FittedTerm("series-compliance", 1e-5, {**shape, "side": -1.0}))
+    half = found.size // 2
+    np.testing.assert_allclose(np.roll(mirrored, half), -found, atol=0.02 * np.abs(found).max())
+    assert np.abs(line(found, 2)) > 0.005 * np.abs(line(found))
