@@ -9,13 +9,12 @@ from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
-from discover.naming.contest import AGREES, UNKNOWN, Contest, run_contest
+from discover.naming.contest import AGREES, UNKNOWN, Contest, reweighed, run_contest
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.refine import extended, refine
-from discover.naming.restart import restarted
+from discover.naming.restart import has_joint, is_joint, polished, restarted
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
-from models.terms import TERMS
 
 MOST_ROUNDS = 6
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
@@ -152,7 +151,7 @@ def _next(
     mended = _mended(fitted, now.fit, contest, name, fits.get(name))
     gained = now.fit.chi2 - mended.chi2
     if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
-        return _Next(_refused(rows, now, contest, name))
+        return _Next(_refused(rows, now, contest, name, left.rounds))
     same = with_member(fitted, now.fit, [r.effect for r in left.rounds])
     if same is not None and same[1].chi2 < mended.chi2:
         return _Next(contest.without(name))
@@ -160,7 +159,7 @@ def _next(
     mended, dropped = _without_superfluous(fitted, mended, earlier)
     after = stage(rows, mended)
     if not _helps(rows, now, after, _NOTICED if left.rounds else 0.0):
-        return _Next(_refused(rows, now, contest, name), rejected=name)
+        return _Next(_refused(rows, now, contest, name, left.rounds), rejected=name)
     return _Next(contest, Round(name, contest, now, after, dropped), gained)
 
 
@@ -182,8 +181,7 @@ def _doubt(name: str) -> float:
     """Return the share of an effect's amplitude by which its shape may be wrong."""
     if name in _EXACT:
         return 0.0
-    joint = TERMS[name].acts == "input" or name == "cavitation"
-    return _JOINT_DOUBT if joint else _SHAPE_DOUBT
+    return _JOINT_DOUBT if is_joint(name) else _SHAPE_DOUBT
 
 
 def _helps(
@@ -207,17 +205,22 @@ def _helps(
     return now < (1.0 - _CLEARLY) * was
 
 
-def _refused(rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str) -> Contest:
+def _refused(
+    rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str, rounds: Sequence[Round]
+) -> Contest:
     """Return the contest without an effect that leaves a gap beyond the noise as it is.
 
-    Where no record's gap is more than noise, it can't tell whether the effect helps.
+    Where no record's gap is more than noise, it can't tell whether the effect helps; after a round
+    what is left is then too little to matter.
     """
     beyond = any(
         m.percent > _BEYOND * m.noise_percent
         for r, m in zip(rows, at.misfits, strict=True)
         if not r.observation.held_out
     )
-    return contest.without(name) if beyond else contest
+    if beyond:
+        return contest.without(name)
+    return contest.without(name, AGREES) if rounds else contest
 
 
 def _contest(
@@ -232,7 +235,13 @@ def _contest(
         0.0,
     )
     contest = run_contest(rows, fit, effects, reversal=reversal, tolerated=tolerated)
-    return refine(rows, fit, contest, effects)
+    contest, fits = refine(rows, fit, contest, effects)
+    best = next((e.effects[0] for e in contest.entries if len(e.effects) == 1), None)
+    if contest.ranked[0][0] != UNKNOWN or best not in fits or not is_joint(best):
+        return contest, fits
+    # A joint's first start seldom leads to its best fit: none shall be unknown for that.
+    fits[best] = restarted(rows, fits[best], len(fits[best].model.terms) - 1)
+    return reweighed(rows, contest, fit, fits, effects), fits
 
 
 def _mended(
@@ -248,7 +257,9 @@ def _mended(
     mended = fit_model(rows, model, free_parameters(model))
     if name == "time-delay":
         return _aligned(rows, mended)
-    return restarted(rows, mended, len(mended.model.terms) - 1)
+    if is_joint(name):
+        mended = restarted(rows, mended, len(mended.model.terms) - 1)
+    return polished(rows, mended) if has_joint(mended.model) else mended
 
 
 def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from discover.gap.accuracy import Misfit, misfit, pooled
 from discover.naming.fit import ModelFit, UnitRows, fit_model, whole_model
 from discover.naming.forces import model_force
+from discover.naming.restart import has_joint
 from discover.naming.rows import RecordRows
 from models.constitutive import ForceModel
 
@@ -49,11 +50,12 @@ def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
         return ()
     if not fit.parameters:
         return tuple(record_misfit(r, fit.model) for r in rows)
+    seen = [r.samples for r in rows] if has_joint(fit.model) else rows
     units = UnitRows()
     found: dict[int, Misfit] = {}
     folds = min(len(rows), _FOLDS)
     for fold in range(folds):
-        rest = [r for i, r in enumerate(rows) if i % folds != fold]
+        rest = [r for i, r in enumerate(seen) if i % folds != fold]
         refit = fit_model(
             rest, fit.model, fit.parameters, iterations=_LEFT_OUT_STEPS, enough=_LEFT_OUT_ENOUGH,
             units=units, exact=False,

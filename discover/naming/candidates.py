@@ -200,9 +200,11 @@ def _cavitation(scales: Scales) -> list[Variant]:
     shares = np.linspace(0.1, 0.96, 12)
     return [
         _one("cavitation", 3, limit=float(c * scales.force), contact=k * scales.omega, loss=0.3,
-             refill=refill, side=s)
+             refill=refill, lag=lag / scales.omega, side=s)
         for c in shares
-        for k, refill in ((6.0, 0.0), (25.0, 0.0), (25.0, 1.0))
+        for k, refill, lag in (
+            (6.0, 0.0, 0.0), (25.0, 0.0, 0.0), (25.0, 1.0, 0.0), (25.0, 1.0, 0.1),
+        )
         for s in (1.0, -1.0)
     ]
 

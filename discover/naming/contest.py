@@ -87,13 +87,15 @@ class Contest:
         """Names and probabilities, most probable first."""
         return sorted(self.probabilities.items(), key=lambda item: -item[1])
 
-    def without(self, effect: str) -> Contest:
+    def without(self, effect: str, instead: str | None = None) -> Contest:
         """Return the contest when adding an effect turns out not to help.
 
-        What it had goes to "unknown", or to "agrees" where that was an answer.
+        What it had goes to `instead`; where that is not given to "unknown", or to "agrees" where
+        that was an answer.
         """
         chances = dict(self.probabilities)
-        other = AGREES if self.excess <= 0.0 and chances[AGREES] > _AN_ANSWER else UNKNOWN
+        agreed = self.excess <= 0.0 and chances[AGREES] > _AN_ANSWER
+        other = instead or (AGREES if agreed else UNKNOWN)
         chances[other] += chances[effect]
         chances[effect] = 0.0
         return replace(self, probabilities=chances)

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import product
 
-import numpy as np
-
+from discover.naming.candidates import Scales, scales_of
 from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
+from models.terms import TERMS
 
 _FACTORS = {"contact": (0.4, 1.0, 2.5), "gap": (0.7, 0.85, 1.0, 1.2)}  # of a joint's shape
 _LOSSES = (0.1, 0.5)
+_LAGS = (0.03, 0.06, 0.12)  # of a valve, over the greatest angular frequency
 _SPRINGS = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # factors of a compliance
 _GASES = ((0.15, 0.3), (0.15, 0.7), (0.5, 0.3), (0.5, 0.7), (2.0, 0.9))  # of force, and share
 _SPRING_LOSS = 0.05
@@ -20,7 +21,30 @@ _FIRST = 3  # that are begun
 _FIRST_STEPS = 3
 _AGAIN = 12
 _ENOUGH = 0.003
+_POLISH = 6
 _GOOD = 1.5  # of chi-square a row, up to which no other start is sought
+
+
+def has_joint(model: ForceModel) -> bool:
+    """Tell whether something in a model moves through a joint, with impacts."""
+    return any(is_joint(t.id) for t in model.terms)
+
+
+def is_joint(effect: str) -> bool:
+    """Tell whether an effect is a joint, simulated in time."""
+    return TERMS[effect].acts == "input" or effect == "cavitation"
+
+
+def polished(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+    """Return a fit through a joint as the samples tell, which see when impacts happen."""
+    samples = [r.samples for r in rows]
+    start = fit_model(samples, fit.model, ())
+    better = fit_model(
+        samples, fit.model, fit.parameters, iterations=_POLISH, enough=_ENOUGH, exact=False
+    )
+    if not better.chi2 < start.chi2:
+        return fit
+    return fit_model(rows, better.model, fit.parameters, iterations=0)
 
 
 def restarted(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
@@ -40,7 +64,7 @@ def restarted(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
     joint = fit.model.terms[at]
     units = UnitRows()
     starts = []
-    for other in _others(joint, max(float(np.abs(r.observation.measured).max()) for r in rows)):
+    for other in _others(joint, scales_of([r.observation for r in rows])):
         model = _with(fit.model, at, other)
         starts.append(fit_model(rows, model, (), units=units))
     starts.sort(key=lambda f: f.chi2)
@@ -59,15 +83,15 @@ def restarted(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
     return again if again.chi2 < fit.chi2 else fit
 
 
-def _others(joint: FittedTerm, force: float) -> list[FittedTerm]:
-    """Return joints around one, for a campaign of forces up to `force` (N); none for others."""
+def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
+    """Return joints around one, in a campaign of these scales; none for other effects."""
     if joint.id == "series-compliance":
         return [
             FittedTerm(
                 joint.id, joint.coefficient * factor,
                 {
-                    **joint.shape, "hardening": load * force, "gas": gas, "loss": _SPRING_LOSS,
-                    "side": side,
+                    **joint.shape, "hardening": load * scales.force, "gas": gas, "side": side,
+                    "loss": _SPRING_LOSS,
                 },
             )
             for side in {0.0, joint.shape["side"]}
@@ -77,10 +101,14 @@ def _others(joint: FittedTerm, force: float) -> list[FittedTerm]:
     if not joint.shape.get("contact", 0.0):
         return []
     names = [n for n in _FACTORS if n in joint.shape]
+    choices: list[dict[str, float]] = [{}]
+    if joint.id == "cavitation":
+        choices += [{"refill": 1.0, "lag": lag / scales.omega} for lag in _LAGS]
     found = []
-    for *factors, loss in product(*(_FACTORS[n] for n in names), _LOSSES):
-        scaled = {n: joint.shape[n] * f for n, f in zip(names, factors, strict=True)}
-        found.append(FittedTerm(joint.id, 1.0, {**joint.shape, **scaled, "loss": loss}))
+    scaled = product(*(_FACTORS[n] for n in names))
+    for factors, loss, choice in product(scaled, _LOSSES, choices):
+        shape = {n: joint.shape[n] * f for n, f in zip(names, factors, strict=True)}
+        found.append(FittedTerm(joint.id, 1.0, {**joint.shape, **shape, "loss": loss, **choice}))
     return found
 
 

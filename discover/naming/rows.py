@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -20,6 +21,7 @@ from models.checks import Array
 from models.constitutive import FittedTerm
 
 _TOLERANCE = 1e-4  # of a record's force: no model is better, and no misfit below it matters
+_SAMPLES = 2500  # of a record, that impacts are fitted to
 _SLOW = 3
 _MODULATED = 3
 _MEAN_AT = 0.3  # of a line, where the spectrum of drifting noise is what moves the mean
@@ -41,11 +43,31 @@ class RecordRows:
     """Number of rows in which a model's error would show: few lines carry it."""
     held: tuple[FittedTerm, ...] = ()
     """Terms of the model in this record that are not fitted."""
-    cycle_rows: Array | None = None
+    cycle_rows: Array | csr_array | None = None
     """(G, R) maps a force on the cycle's grid to rows, as `project` does with the same force at
     the samples; None where there is no cycle."""
     steady: int | None = None
     """Number of the first rows, which a change over the record's time leaves; None: all."""
+
+    @cached_property
+    def samples(self) -> RecordRows:
+        """The first samples of a sine test, over their noise, as rows; others as they are.
+
+        Impacts are shorter than the shortest harmonic: only samples see when they happen.
+        """
+        o = self.observation
+        if o.cycle is None or not o.record.uniform:
+            return self
+        count = min(o.time.size, _SAMPLES)
+        floor = _TOLERANCE**2 * o.windows[0].power
+        noise = sum(w.share * w.noise_power for w in o.windows)
+        scale = 1.0 / np.sqrt(noise + floor)
+
+        def project(columns: Array) -> Array:
+            return np.asarray(scale * np.asarray(columns)[..., :count])
+
+        on_cycle = scale * _between(o)[:, :count]
+        return RecordRows(o, project(o.measured), project, 8.0, self.held, on_cycle)
 
 
 def record_rows(
@@ -114,23 +136,26 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
 
 
 def _cycle_rows(observation: Observation, whitened: Array) -> Array | None:
-    """Return the rows (G, R) of the cycle's points: samples lie between two of them."""
-    cycle = observation.cycle
-    if cycle is None:
-        return None
-    size = cycle.displacement.size
+    """Return the rows (G, R) of the cycle's points."""
+    return None if observation.cycle is None else np.asarray(_between(observation) @ whitened)
+
+
+def _between(observation: Observation) -> csr_array:
+    """Return what each of the cycle's points (G) is of each sample (N), between two of them."""
+    if observation.cycle is None:
+        raise ValueError("only a sine test has a cycle")
+    size = observation.cycle.displacement.size
     place = np.mod(observation.motion.time * observation.frequency, 1.0) * size
     before = np.minimum(place.astype(int), size - 1)
     share = place - before
     samples = np.arange(place.size)
-    between = csr_array(
+    return csr_array(
         (
             np.concatenate([1.0 - share, share]),
             (np.concatenate([before, (before + 1) % size]), np.tile(samples, 2)),
         ),
         shape=(size, place.size),
     )
-    return np.asarray(between @ whitened)
 
 
 def _hum(frequencies: Array, width: float, rate: float) -> Array:

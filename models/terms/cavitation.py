@@ -13,8 +13,9 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     """Return the device's force, the fluid's part of which is limited on one side.
 
     With `contact` (rad/s) above 0 the oil column tears: a void grows while the limit holds, the
-    fluid lags behind, and force returns when the void is filled, or at once where a valve makes
-    up what is lost (`refill` 1). With `contact` 0 the force is only cut.
+    fluid lags behind, and force returns when the void is filled, or where a valve makes up what
+    is lost (`refill` 1), with a slam `lag` (s) after the flow has turned. With `contact` 0 the
+    force is only cut.
     `coefficient` 1 is all of what it changes.
     """
     force = force_of(motion)
@@ -33,6 +34,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         lower=lower,
         upper=upper,
         refilled=shape["refill"] > 0.0,
+        lag=shape["lag"],
         fluid_only=True,
     )
     return np.asarray(force + coefficient * (through_joint(force, motion, joint, device) - force))
@@ -50,6 +52,7 @@ TERM = Term(
         Parameter("contact", 0.0, 1e4, 0.0, "rad/s"),
         Parameter("loss", 0.0, 1.0, 0.2, ""),
         Parameter("refill", 0.0, 1.0, 0.0, ""),
+        Parameter("lag", 0.0, 0.1, 0.0, "s"),
         Parameter("side", -1.0, 1.0, -1.0, ""),
     ),
     nonnegative=True,

@@ -45,6 +45,8 @@ class Joint:
     """N, greatest force that it carries."""
     refilled: bool = False
     """True where what is lost at a limit is made up at once, as by a valve: the joint slips."""
+    lag: float = 0.0
+    """s that the valve takes to close, once the flow through it has turned."""
     hardening: float = 0.0
     """N of force that squeezes gas in the spring to half its volume; 0 for a linear one."""
     gas: float = 0.0
@@ -157,8 +159,8 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, stiffness,
-        damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.hardening,
-        joint.gas, joint.hardens, passes,
+        damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.lag,
+        joint.hardening, joint.gas, joint.hardens, passes,
     )
     return np.asarray(force + carried - rigid)
 
@@ -167,7 +169,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, stiffness: float, damping: float, half: float, lower: float,
-    upper: float, refilled: int, hardening: float, gas: float, hardens: float,
+    upper: float, refilled: int, lag: float, hardening: float, gas: float, hardens: float,
     passes: int,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps."""
@@ -177,9 +179,10 @@ def _step(
     pace_limit = np.max(np.abs(v))
     h = step / inner
     brake = h * dry / mass
-    rate = 0.0
+    rate, turned_for = 0.0, -1.0  # the valve's time; -1 where it is closed
     before = np.zeros((3, 2))  # what the last cycles began with
     known = 0  # of them
+    limit = 0.0
     for turn in range(passes):
         was, was_speed = position - x[0] + slipped, speed
         deepest = 0.0
@@ -213,8 +216,17 @@ def _step(
                 elif depth < -half:
                     force = stiffness * (depth + half) + damping * (pace - now)
                     force = min(force, 0.0) if half > 0.0 else force
-                if refilled == 1 and (force < lower or force > upper):
-                    slipped += (force - min(max(force, lower), upper)) / stiffness
+                if refilled == 1:
+                    if turned_for < 0.0 and (force < lower or force > upper):
+                        turned_for, limit = 0.0, lower if force < lower else upper
+                    if turned_for >= 0.0:
+                        back = (pace - now) if limit == lower else (now - pace)
+                        turned_for = turned_for + h if back > 0.0 else 0.0
+                        force = limit
+                        if turned_for > lag:
+                            gained = (pace - now) * min(turned_for - lag, h)
+                            slipped = end - position - limit / stiffness - gained
+                            turned_for = -1.0
                 force = min(max(force, lower), upper)
                 total += force
                 start = speed

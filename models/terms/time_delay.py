@@ -26,6 +26,8 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
 
 def between_samples(force: Array, time: Array, delay: float, degree: int) -> Array:
     """Return samples (N,) some seconds late by a spline of this degree through them."""
+    if not np.all(np.isfinite(force)):
+        return np.full_like(force, np.nan)
     spline = make_interp_spline(time, force, k=degree)
     return np.asarray(spline(np.clip(time - delay, time[0], time[-1])))
 
