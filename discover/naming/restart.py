@@ -11,7 +11,9 @@ from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 
-_FACTORS = {"contact": (0.4, 1.0, 2.5), "gap": (0.7, 0.85, 1.0, 1.2)}  # of a joint's shape
+_FACTORS = {  # of a joint's shape
+    "contact": (0.4, 1.0, 2.5), "gap": (0.7, 0.85, 1.0, 1.2), "limit": (0.95, 1.0, 1.05)
+}
 _LOSSES = (0.1, 0.5)
 _LAGS = (0.03, 0.06, 0.12)  # of a valve, over the greatest angular frequency
 _SPRINGS = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # factors of a compliance
@@ -21,6 +23,8 @@ _FIRST = 3  # that are begun
 _FIRST_STEPS = 3
 _AGAIN = 12
 _ENOUGH = 0.003
+_TURNS = 3  # of starts around the best so far,
+_MUCH = 0.5  # as long as chi-square falls to this share
 _POLISH = 6
 _GOOD = 1.5  # of chi-square a row, up to which no other start is sought
 
@@ -59,8 +63,16 @@ def restarted(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
     at : int
         Index of the joint's term.
     """
-    if fit.chi2 < _GOOD * fit.residual.size:
-        return fit
+    for _ in range(_TURNS):
+        if fit.chi2 < _GOOD * fit.residual.size:
+            break
+        before, fit = fit.chi2, _best_start(rows, fit, at)
+        if fit.chi2 > _MUCH * before:
+            break
+    return fit
+
+
+def _best_start(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
     joint = fit.model.terms[at]
     units = UnitRows()
     starts = []

@@ -12,8 +12,9 @@ from markupsafe import Markup, escape
 
 from discover.report import words
 from discover.report.verdict import not_ruled_out
+from models.terms import TERMS
 
-_SHAPES = (("order", ""), ("exponent", ""), ("stribeck_velocity", " m/s"), ("gap", " m"))
+_ALWAYS = ("order", "exponent")  # shown at their defaults too
 
 
 def unit(text: str) -> Markup:
@@ -46,12 +47,18 @@ def shape(term: Mapping[str, Any]) -> str:
     --------
     >>> shape({"id": "fractional-derivative", "order": 1.48, "order_interval": [1.42, 1.55]})
     'order 1.48 (1.42 to 1.55)'
+    >>> shape({"id": "coulomb-friction", "transition_speed": 0.002, "presliding": 0.0})
+    'transition speed 0.002 m/s'
     """
     parts = []
-    for name, suffix in _SHAPES:
-        if term.get(name) is None:
+    known = TERMS.get(str(term.get("id")))
+    for parameter in () if known is None else known.parameters:
+        name = parameter.name
+        value = term.get(name)
+        if value is None or (value == parameter.default and name not in _ALWAYS):
             continue
-        text = f"{name.replace('_', ' ')} {words.significant(term[name], 4)}{suffix}"
+        unit_text = f" {parameter.unit}" if parameter.unit else ""
+        text = f"{name.replace('_', ' ')} {words.significant(value, 4)}{unit_text}"
         spread = words.interval(term.get(f"{name}_interval"), 4)
         parts.append(f"{text} ({spread})" if spread else text)
     return ", ".join(parts)

@@ -81,10 +81,10 @@ def _corrected(entry: Mapping[str, Any] | None) -> str:
         return ""
     counts = Counter(str(e) for e in entry["effects"])
     terms = [
-        f"{number} more {'term' if number == 1 else 'terms'} of {term_name(name)}"
+        f"the curve of {term_name(name)} takes {number} more {'term' if number == 1 else 'terms'}"
         for name, number in counts.items()
     ]
-    return f" ({percent(entry['gap_by_formula_percent'])} by formula, without {listed(terms)})"
+    return f" ({percent(entry['gap_by_formula_percent'])} by formula; {listed(terms)})"
 
 
 def gap_figures(document: Mapping[str, Any], data: GapFigureData) -> dict[str, str]:

@@ -23,18 +23,16 @@ from scipy.optimize import minimize_scalar, nnls
 from discover.records import Campaign, Record
 from discover.study import run_study
 from models.flow import dean_per_speed
-from models.rig import Chain, Limits, Plan, RigPhysics, RigRecord, random_device, run, sine_point
+from models.rig import Chain, Plan, RigPhysics, RigRecord, random_device, run, sine_point
+from tests.calibration.plans import PLANS, drawn_points, new_points
 from tests.calibration.rates import rate, reliability
 
 ALIKE = 0.05
 """Relative difference of prediction errors up to which structures predict alike."""
 UNSEEN = 1e-3
 """Of the force: errors closer than this are alike too; no load cell sees them."""
-NEW = 12
-"""New tests in a band."""
 _HARMONICS = 5
 _REVERSAL = 0.05  # of the speed amplitude: friction reverses over a range
-_PLANS = ("wide", "narrow", "single", "one amplitude")
 _EXTRAS = (
     (), ("friction",), ("stiffness",), ("friction", "stiffness"), ("friction", "cubic"),
     ("friction", "-cubic"), ("friction", "stiffness", "-cubic"),
@@ -278,42 +276,6 @@ def _own(band) -> list[tuple[tuple[str, ...], float]]:
     return [(tuple(names), order)] if names else []
 
 
-def _points(rng, plan: str, device) -> list[tuple[float, float]]:
-    low, high = rng.uniform(0.1, 0.5), rng.uniform(5.0, 15.0)
-    count, levels = int(rng.integers(5, 10)), int(rng.integers(2, 4))
-    if plan == "narrow":
-        low = float(np.exp(rng.uniform(np.log(0.3), np.log(6.0))))
-        high, levels = low * rng.uniform(1.3, 2.0), 3
-    elif plan == "single":
-        low = high = float(np.exp(rng.uniform(np.log(0.5), np.log(5.0))))
-        count, levels = 1, 6
-    elif plan == "one amplitude":
-        levels = 1
-    amplitudes = rng.uniform(0.01, 0.02) * (0.75 if plan == "single" else 0.5) ** np.arange(levels)
-    limits = Limits()
-    return [
-        (float(f), float(a))
-        for a in amplitudes
-        for f in np.geomspace(low, high, count)
-        if limits.allows(device, sine_point(float(f), float(a)))
-    ]
-
-
-def _new_points(rng, tested: Sequence[tuple[float, float]], device, inside) -> list:
-    """Return new tests in the range of those in a band, inside it and the rig's limits."""
-    f, a = np.array(tested).T
-    limits, result = Limits(), []
-    for _ in range(200 * NEW):
-        point = tuple(
-            float(np.exp(rng.uniform(np.log(v.min()), np.log(v.max())))) for v in (f, a)
-        )
-        if inside(*point) and limits.allows(device, sine_point(*point)):
-            result.append(point)
-        if len(result) == NEW:
-            break
-    return result
-
-
 def _waves_of(record: RigRecord) -> _Waves:
     return _waves(record.time, record.true_displacement, record.frequency)
 
@@ -324,10 +286,10 @@ def judge_campaign(seed: int) -> list[Outcome]:
     device = random_device(rng)
     kind = "simple" if seed % 2 == 0 else "full"
     physics = RigPhysics.simple() if kind == "simple" else RigPhysics()
-    plan = str(rng.choice(_PLANS, p=[0.45, 0.25, 0.1, 0.2]))
+    plan = str(rng.choice(PLANS, p=[0.45, 0.25, 0.1, 0.2]))
     points: list[tuple[float, float]] = []
     while len(points) < (4 if plan in ("single", "one amplitude") else 8):
-        points = _points(rng, plan, device)
+        points = drawn_points(rng, plan, device)
     chain = Chain(noise=rng.uniform(0.01, 0.05), low_frequency=rng.uniform(0.0, 0.9))
     measured = run(
         device, Plan(tuple(sine_point(*p) for p in points)), seed=seed, physics=physics,
@@ -351,11 +313,11 @@ def judge_campaign(seed: int) -> list[Outcome]:
             return (band.lower or 0.0) <= value <= (band.upper or np.inf)
 
         numbers = [int(name.split(".")[0]) for name in band.records]
-        new_points = _new_points(rng, [points[i] for i in numbers], device, inside)
-        if not new_points:
+        fresh = new_points(rng, [points[i] for i in numbers], device, inside)
+        if not fresh:
             continue
         new = run(
-            device, Plan(tuple(sine_point(*p) for p in new_points)), seed=seed + 1_000_000,
+            device, Plan(tuple(sine_point(*p) for p in fresh)), seed=seed + 1_000_000,
             physics=physics, chain=Chain.ideal(),
         )
         waves, forces = [_waves_of(measured[i]) for i in numbers], [
@@ -395,7 +357,7 @@ def table(found: Sequence[Outcome]) -> str:
         " first or an equivalent does | share (95 %) | first is the very best |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    groups = [(p, q) for p in ("simple", "full") for q in (*_PLANS, "all")]
+    groups = [(p, q) for p in ("simple", "full") for q in (*PLANS, "all")]
     for physics, plan in groups:
         some = [o for o in found if o.physics == physics and plan in (o.plan, "all")]
         if some:

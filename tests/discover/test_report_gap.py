@@ -1,6 +1,7 @@
 import pytest
 
 from discover.figure_data import GapFigureData
+from discover.plots.gap import gap_by_round
 from discover.report.gap import gap_figures, gap_lines, gap_report
 from tests.discover.sample_gap import sample_gap_data, sample_gap_document
 from tests.discover.test_report_study import Page
@@ -51,3 +52,16 @@ def test_nothing_named_still_reports(verdict):
     assert verdict.capitalize() in page.text
     assert ("Odd in velocity" in page.text) == (verdict == "unexplained")
     assert "Round 1" not in page.text
+
+
+def test_the_round_says_how_far_the_formula_alone_came():
+    corrected = {
+        "effects": ["asymmetric-damping", "asymmetric-damping"],
+        "gap_by_formula_percent": 2.5,
+        "held_out_by_formula_percent": 2.7,
+    }
+    document = sample_gap_document()
+    document["rounds"] = [{**document["rounds"][0], "corrected": corrected}]
+    text = " ".join(gap_lines(document)).replace("\u202f", " ")
+    assert "(2.5 % by formula; the curve of asymmetric damping takes 2 more terms)" in text
+    assert "by formula" in (gap_by_round(document) or "")

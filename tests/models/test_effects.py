@@ -179,3 +179,26 @@ def test_gas_on_one_side_softens_that_side_only():
     half = found.size // 2
     np.testing.assert_allclose(np.roll(mirrored, half), -found, atol=0.02 * np.abs(found).max())
     assert np.abs(line(found, 2)) > 0.005 * np.abs(line(found))
+
+
+def test_a_valve_that_closes_late_holds_the_limit_longer_and_slams():
+    limit, lag = 300.0, 5e-3
+    shape = {"limit": limit, "contact": 600.0, "loss": 0.4, "refill": 1.0, "side": -1.0}
+    at_once = force(*LINEAR, FittedTerm("cavitation", 1.0, shape))
+    late = force(*LINEAR, FittedTerm("cavitation", 1.0, {**shape, "lag": lag}))
+    held = [np.count_nonzero(f < -0.999 * limit) * MOTION.step for f in (at_once, late)]
+    assert held[1] - held[0] == pytest.approx(lag, rel=0.15)
+    jumps = [np.diff(f).max() for f in (at_once, late)]
+    assert jumps[1] > 2.0 * jumps[0]
+
+
+def test_a_valve_s_lag_moves_the_force_evenly():
+    """Between two samples too: what is fitted has to follow it."""
+    shape = {"limit": 300.0, "contact": 600.0, "loss": 0.4, "refill": 1.0, "side": -1.0}
+    means = [
+        force(*LINEAR, FittedTerm("cavitation", 1.0, {**shape, "lag": lag})).mean()
+        for lag in 5e-3 + MOTION.step * np.linspace(0.0, 1.0, 6)
+    ]
+    steps = np.diff(means)
+    assert np.all(steps * np.sign(steps.sum()) > 0.0)
+    assert steps.max() - steps.min() < np.abs(steps.mean())

@@ -1,0 +1,83 @@
+"""Starts of what moves through a joint. The model's own force: it is the search that is tested."""
+
+import numpy as np
+import pytest
+
+from discover.motion_fit import observe
+from discover.naming.fit import fit_model, free_parameters
+from discover.naming.restart import has_joint, is_joint, polished, restarted
+from discover.naming.rows import record_rows
+from models.constitutive import FittedTerm, ForceModel
+from models.motion import sine_motion
+from tests.discover.gap_data import campaign
+
+DEVICE = (FittedTerm("inertia", 120.0), FittedTerm("viscous-damping", 800.0))
+PLAY = {"gap": 2e-4, "contact": 400.0, "loss": 0.5, "inside": 0.0}
+
+
+def through(joint):
+    model = ForceModel((*DEVICE, joint))
+
+    def law(t, x, v, a):
+        amplitude = round(float(np.abs(x).max()), 5)
+        frequency = round(float(np.abs(v).max()) / amplitude / (2.0 * np.pi), 2)
+        cycle = sine_motion(amplitude, frequency, samples=1024)
+        force = model.force(cycle)
+        grid = np.arange(1025) / 1024.0
+        return np.interp(np.mod(t * frequency, 1.0), grid, np.append(force, force[0]))
+
+    return [record_rows(observe(r)) for r in campaign(law).records]
+
+
+@pytest.fixture(scope="module")
+def play():
+    return through(FittedTerm("backlash", 1.0, PLAY))
+
+
+def test_a_start_in_another_hollow_is_left(play):
+    wrong = FittedTerm("backlash", 0.6, {**PLAY, "gap": 2.7e-4, "contact": 180.0})
+    model = ForceModel((*DEVICE, wrong))
+    stuck = fit_model(play, model, free_parameters(model), iterations=8)
+    found = restarted(play, stuck, 2)
+    assert found.chi2 < 0.05 * stuck.chi2
+    assert found.model.terms[2].shape["gap"] == pytest.approx(PLAY["gap"], rel=0.03)
+    assert abs(stuck.model.terms[2].shape["gap"] / PLAY["gap"] - 1.0) > 0.1
+
+
+def test_a_good_start_is_kept(play):
+    model = ForceModel((*DEVICE, FittedTerm("backlash", 1.0, PLAY)))
+    good = fit_model(play, model, free_parameters(model), iterations=2)
+    assert restarted(play, good, 2) is good
+
+
+def test_samples_say_more_of_impacts_than_lines(play):
+    samples = [r.samples for r in play]
+    model = ForceModel((*DEVICE, FittedTerm("backlash", 1.0, {**PLAY, "gap": 2.004e-4})))
+    rough = fit_model(play, model, free_parameters(model), iterations=0)
+    found = polished(play, rough)
+    before = fit_model(samples, rough.model, ()).chi2
+    assert fit_model(samples, found.model, ()).chi2 < 0.8 * before
+    assert found.residual.size == rough.residual.size
+
+
+def test_samples_of_other_terms_are_their_force(play):
+    """The rows of samples hold the same force as the record, over the noise."""
+    r = play[-1]
+    rows = r.samples
+    count = rows.target.size
+    scale = rows.target / r.observation.measured[:count]
+    np.testing.assert_allclose(scale, scale[0])
+    velocity = r.observation.motion.velocity
+    np.testing.assert_allclose(rows.project(velocity), scale[0] * velocity[:count])
+    cycle = r.observation.cycle.velocity
+    near = np.abs(cycle @ rows.cycle_rows - rows.project(velocity)).max()
+    assert near < 1e-3 * np.abs(rows.project(velocity)).max()
+
+
+def test_what_is_a_joint():
+    assert is_joint("backlash")
+    assert is_joint("series-compliance")
+    assert is_joint("cavitation")
+    assert not is_joint("sensor-clipping")
+    assert has_joint(ForceModel((*DEVICE, FittedTerm("backlash", 1.0, PLAY))))
+    assert not has_joint(ForceModel(DEVICE))
