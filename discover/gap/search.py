@@ -98,19 +98,24 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     first = refitted if moved else replace(start, fit=fit)
     rounds: list[Round] = []
     tried: set[str] = set()
-    doubt, members = 0.0, 0
+    doubt, members, curves = 0.0, 0, True
     while True:
         now = rounds[-1].after if rounds else first
         present = {t.id for t in now.fit.model.terms}
         open_effects = [e for e in effects if e not in present and e not in tried]
-        found = _next(rows, fitted, now, _Open(open_effects, doubt, rounds, len(rounds) < most))
+        left = _Open(open_effects, doubt, rounds, len(rounds) < most, curves)
+        found = _next(rows, fitted, now, left)
         if found.added is not None:
+            curves = True
             doubt += _doubt(found.added.effect) ** 2 * found.gained
             tried |= set(found.added.dropped)
             rounds.append(found.added)
             continue
         added = [r.effect for r in rounds]
         better = corrected(rows, fitted, now, added, most=_MOST_MEMBERS - members)
+        if better is None and found.waits:
+            curves = False
+            continue
         if better is None:
             return Search(start, refitted, tuple(rounds), found.contest, found.rejected)
         members += len(better.effects)
@@ -128,6 +133,8 @@ class _Open:
     doubt: float
     rounds: Sequence[Round]
     more: bool
+    curves: bool
+    """Whether the curves of what was added may explain more than a further effect."""
 
 
 @dataclass(frozen=True)
@@ -138,6 +145,8 @@ class _Next:
     added: Round | None = None
     gained: float = 0.0
     rejected: str | None = None
+    waits: bool = False
+    """An effect was named that the curves of what was added may explain better."""
 
 
 def _next(
@@ -146,15 +155,17 @@ def _next(
     """Return the next round: the contest, and the effect that it names, added."""
     contest, fits = _contest(fitted, now.fit, left.effects, left.doubt)
     name = contest.ranked[0][0]
-    if name in (AGREES, UNKNOWN) or not left.more or _within_doubt(rows, left.rounds):
+    if name in (AGREES, UNKNOWN) or not left.more:
         return _Next(contest)
+    if _within_doubt(rows, left.rounds):
+        return _Next(contest.without(name, AGREES))
     mended = _mended(fitted, now.fit, contest, name, fits.get(name))
     gained = now.fit.chi2 - mended.chi2
     if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
         return _Next(_refused(rows, now, contest, name, left.rounds))
-    same = with_member(fitted, now.fit, [r.effect for r in left.rounds])
+    same = with_member(fitted, now.fit, [r.effect for r in left.rounds]) if left.curves else None
     if same is not None and same[1].chi2 < mended.chi2:
-        return _Next(contest.without(name))
+        return _Next(contest.without(name), waits=True)
     earlier = [r.effect for r in left.rounds if r.effect in {t.id for t in mended.model.terms}]
     mended, dropped = _without_superfluous(fitted, mended, earlier)
     after = stage(rows, mended)

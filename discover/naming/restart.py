@@ -106,7 +106,7 @@ def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
                     "loss": _SPRING_LOSS,
                 },
             )
-            for side in {0.0, joint.shape["side"]}
+            for side in dict.fromkeys((0.0, joint.shape["side"]))
             for factor in _SPRINGS
             for load, gas in _GASES
         ]
