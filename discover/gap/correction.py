@@ -15,7 +15,7 @@ import numpy as np
 from discover.gap.accuracy import pooled
 from discover.gap.stages import Stage, left_out, stage
 from discover.naming.candidates import Part, Variant, scales_of, variants
-from discover.naming.contest import candidate_columns, without_span
+from discover.naming.columns import candidate_columns, without_span
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
@@ -107,8 +107,6 @@ def with_member(
     if not members:
         return None
     raw = candidate_columns(rows, fit.model, [Variant(m.id, (m,), 0) for m in members])
-    with np.errstate(over="ignore", invalid="ignore"):
-        raw[~np.isfinite(np.sum(raw**2, axis=1))] = 0.0
     apart = without_span(raw, fit.tangents)
     power, along = np.sum(apart**2, axis=1), apart @ fit.residual
     seen = power > _APART * np.sum(raw**2, axis=1)

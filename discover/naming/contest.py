@@ -16,11 +16,10 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.naming.candidates import Variant, scales_of, variants
-from discover.naming.fit import ModelFit, kind_of, whole_model
-from discover.naming.forces import Trial
+from discover.naming.columns import candidate_columns, reversal_doubt, without_span
+from discover.naming.fit import ModelFit, kind_of
 from discover.naming.rows import RecordRows
 from models.checks import Array
-from models.constitutive import ForceModel
 from models.terms import TERMS
 
 AGREES = "agrees"
@@ -43,7 +42,6 @@ _REFUTED = 40.0  # nats at most, that rows take back which an effect makes worse
 _UNSEEN = 15.0  # nats that a change over time loses where none is seen inside the records
 _SEEN = 10.0  # of chi-square, from which one is
 _UNEVEN = 5
-_REVERSALS = (0.4, 2.5)
 _NEEDS = {"stribeck-friction": "coulomb-friction"}  # a fall needs a friction to fall to
 
 
@@ -108,60 +106,6 @@ class Contest:
 Evidence = Callable[[float, int], float]
 
 
-def candidate_columns(
-    rows: Sequence[RecordRows], model: ForceModel, chosen: Sequence[Variant]
-) -> Array:
-    """Return the whitened rows of every part of every variant, (C, R)."""
-    parts = [p for v in chosen for p in v.parts]
-    terms = [TERMS[p.id] for p in parts]
-    shapes = [t.shape(p.shape) for t, p in zip(terms, parts, strict=True)]
-    blocks = []
-    for r in rows:
-        trial = Trial(r.observation, whole_model(r, model))
-        forces = [
-            trial.added(t, s, p.probe) for t, s, p in zip(terms, shapes, parts, strict=True)
-        ]
-        block = np.empty((len(parts), r.target.size))
-        over = np.array(
-            [trial.on_cycle(t, s) for t, s in zip(terms, shapes, strict=True)], dtype=np.bool_
-        )
-        on_cycle, at_samples = np.flatnonzero(over), np.flatnonzero(~over)
-        if r.cycle_rows is not None and on_cycle.size:
-            block[over] = np.stack([forces[i] for i in on_cycle]) @ r.cycle_rows
-        if at_samples.size:
-            block[~over] = r.project(np.stack([forces[i] for i in at_samples]))
-        blocks.append(block)
-    return np.concatenate(blocks, axis=1)
-
-
-def _reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
-    """Return rows by which the curve along which friction reverses may differ from tanh."""
-    friction = next((t for t in model.terms if t.id == "coulomb-friction"), None)
-    size = sum(r.target.size for r in rows)
-    if friction is None or friction.shape["transition_speed"] == 0.0:
-        return np.zeros((0, size))
-    speed = friction.shape["transition_speed"]
-    blocks = []
-    for r in rows:
-        v = r.observation.motion.velocity
-        own = np.tanh(v / speed)
-        curves = [np.tanh(v / (s * speed)) - own for s in _REVERSALS]
-        curves.append(v / np.hypot(v, speed) - own)
-        blocks.append(r.project(friction.coefficient * np.stack(curves)))
-    return np.concatenate(blocks, axis=1)
-
-
-def without_span(columns: Array, tangents: Array) -> Array:
-    """Return what of `columns` (C, R) the `tangents` (P, R) do not span."""
-    scale = np.linalg.norm(tangents, axis=1)
-    used = tangents[scale > 0.0] / scale[scale > 0.0, None]
-    if not used.size:
-        return columns
-    left, values, right = np.linalg.svd(used, full_matrices=False)
-    basis = right[values > 1e-9 * values[0]]
-    return np.asarray(columns - (columns @ basis.T) @ basis)
-
-
 def cost(excess: float, informative: float, tolerated: float = 0.0) -> float:
     """Return minus two times the log likelihood of a misfit above the noise.
 
@@ -205,9 +149,7 @@ def run_contest(
     noise = dof + _NOISE_DEVIATIONS * np.sqrt(2.0 * dof) * 0.5 + _NOISE_UNCERTAINTY * dof
     noise += tolerated
     raw = candidate_columns(rows, fit.model, chosen)
-    with np.errstate(over="ignore", invalid="ignore"):
-        raw[~np.isfinite(np.sum(raw**2, axis=1))] = 0.0  # overflows: no candidate
-    tangents = np.concatenate([fit.tangents, _reversal_doubt(rows, fit.model)])
+    tangents = np.concatenate([fit.tangents, reversal_doubt(rows, fit.model)])
     freed = without_span(raw, tangents)
     target = without_span(fit.residual[None], tangents)[0]
     chi2 = float(target @ target)
@@ -389,7 +331,7 @@ def reweighed(
             entries.append(e)
             continue
         found = fits[e.effects[0]]
-        tangents = np.concatenate([found.tangents, _reversal_doubt(rows, found.model)])
+        tangents = np.concatenate([found.tangents, reversal_doubt(rows, found.model)])
         left = without_span(found.residual[None], tangents)[0]
         chi2 = min(float(left @ left), e.chi2)
         spent = sum(len(v.parts) + v.shapes for v in e.variants)

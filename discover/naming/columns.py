@@ -1,0 +1,77 @@
+"""Whitened rows of what is tried beside a model, and what of them the model does not span."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from discover.naming.candidates import Variant
+from discover.naming.fit import whole_model
+from discover.naming.forces import Trial
+from discover.naming.rows import RecordRows
+from models.checks import Array
+from models.constitutive import ForceModel
+from models.terms import TERMS
+
+_REVERSALS = (0.4, 2.5)
+
+
+def candidate_columns(
+    rows: Sequence[RecordRows], model: ForceModel, chosen: Sequence[Variant]
+) -> Array:
+    """Return the whitened rows of every part of every variant, (C, R).
+
+    Where one overflows its row is zero: no candidate.
+    """
+    parts = [p for v in chosen for p in v.parts]
+    terms = [TERMS[p.id] for p in parts]
+    shapes = [t.shape(p.shape) for t, p in zip(terms, parts, strict=True)]
+    blocks = []
+    for r in rows:
+        trial = Trial(r.observation, whole_model(r, model))
+        forces = [
+            trial.added(t, s, p.probe) for t, s, p in zip(terms, shapes, parts, strict=True)
+        ]
+        block = np.empty((len(parts), r.target.size))
+        over = np.array(
+            [trial.on_cycle(t, s) for t, s in zip(terms, shapes, strict=True)], dtype=np.bool_
+        )
+        on_cycle, at_samples = np.flatnonzero(over), np.flatnonzero(~over)
+        if r.cycle_rows is not None and on_cycle.size:
+            block[over] = np.stack([forces[i] for i in on_cycle]) @ r.cycle_rows
+        if at_samples.size:
+            block[~over] = r.project(np.stack([forces[i] for i in at_samples]))
+        blocks.append(block)
+    rows_of_parts = np.concatenate(blocks, axis=1)
+    with np.errstate(over="ignore", invalid="ignore"):
+        rows_of_parts[~np.isfinite(np.sum(rows_of_parts**2, axis=1))] = 0.0
+    return rows_of_parts
+
+
+def reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
+    """Return rows by which the curve along which friction reverses may differ from tanh."""
+    friction = next((t for t in model.terms if t.id == "coulomb-friction"), None)
+    size = sum(r.target.size for r in rows)
+    if friction is None or friction.shape["transition_speed"] == 0.0:
+        return np.zeros((0, size))
+    speed = friction.shape["transition_speed"]
+    blocks = []
+    for r in rows:
+        v = r.observation.motion.velocity
+        own = np.tanh(v / speed)
+        curves = [np.tanh(v / (s * speed)) - own for s in _REVERSALS]
+        curves.append(v / np.hypot(v, speed) - own)
+        blocks.append(r.project(friction.coefficient * np.stack(curves)))
+    return np.concatenate(blocks, axis=1)
+
+
+def without_span(columns: Array, tangents: Array) -> Array:
+    """Return what of `columns` (C, R) the `tangents` (P, R) do not span."""
+    scale = np.linalg.norm(tangents, axis=1)
+    used = tangents[scale > 0.0] / scale[scale > 0.0, None]
+    if not used.size:
+        return columns
+    left, values, right = np.linalg.svd(used, full_matrices=False)
+    basis = right[values > 1e-9 * values[0]]
+    return np.asarray(columns - (columns @ basis.T) @ basis)
