@@ -151,7 +151,11 @@ def _stribeck(scales: Scales) -> list[Variant]:
 
 
 def _delay(scales: Scales) -> list[Variant]:
-    return [_one("time-delay", 0, probe=0.02 / scales.omega)]
+    made = ((0, 0.0), (1, 1.0), (1, 3.0))  # sampled later, or aligned from samples
+    return [
+        _one("time-delay", shapes, probe=0.02 / scales.omega, resampled=degree)
+        for shapes, degree in made
+    ]
 
 
 def _compliance(scales: Scales) -> list[Variant]:
@@ -252,13 +256,8 @@ def _gain(scales: Scales) -> list[Variant]:
     chosen = between[:: max(between.size // 16, 1)]
     uniform = [_one("sensor-gain", 0, 1e-3, threshold=0.0, side=1.0)]
     ranges = [_one("sensor-gain", 1, 1e-3, threshold=float(t), side=1.0) for t in chosen]
-    grows = [_one("sensor-gain", 1, 1e-3, threshold=scales.force, form=1.0)]
-    one_way = [_one("sensor-gain", 1, 1e-3, side=1.0, form=2.0)]
-    slow = [
-        _one("sensor-gain", 1, 1e-3, corner=float(k * scales.omega), form=3.0)
-        for k in (0.1, 0.3, 1.0, 3.0, 10.0)
-    ]
-    return uniform + ranges + grows + one_way + slow
+    one_way = [_one("sensor-gain", 1, 1e-3, side=1.0, one_way=1.0)]
+    return uniform + ranges + one_way
 
 
 def _clipping(scales: Scales) -> list[Variant]:

@@ -17,7 +17,7 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "resampled",
-                 "corner")
+                 "one_way")
 _STEP = 1e-4  # of a value, for its tangent
 _JOINT_STEP = 1e-3  # likewise behind a joint, whose simulated cycle closes to less
 _ITERATIONS = 40

@@ -116,7 +116,7 @@ class Trial:
             Coefficient at which a change of input or output is tried.
         """
         if term.id == DELAY and self.observation.late is not None:
-            late = ForceModel((*self.model.terms, FittedTerm(DELAY, probe)))
+            late = ForceModel((*self.model.terms, FittedTerm(DELAY, probe, shape)))
             return (model_force(self.observation, late) - self._late_from) / probe
         cycle = self.observation.cycle if self.on_cycle(term, shape) else None
         motion = self.observation.motion if cycle is None else cycle
