@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import product
 
+import numpy as np
+
 from discover.naming.candidates import Scales, scales_of
 from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters
 from discover.naming.rows import RecordRows
@@ -19,6 +21,7 @@ _LAGS = (0.03, 0.06, 0.12)  # of a valve, over the greatest angular frequency
 _SPRINGS = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # factors of a compliance
 _GASES = ((0.15, 0.3), (0.15, 0.7), (0.5, 0.3), (0.5, 0.7), (2.0, 0.9))  # of force, and share
 _SPRING_LOSS = 0.05
+_TRIED = 12  # records
 _FIRST = 3  # that are begun
 _FIRST_STEPS = 3
 _AGAIN = 12
@@ -75,6 +78,7 @@ def restarted(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
 def _best_start(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
     joint = fit.model.terms[at]
     units = UnitRows()
+    whole, rows = rows, _telling(rows, fit)
     starts = []
     for other in _others(joint, scales_of([r.observation for r in rows])):
         model = _with(fit.model, at, other)
@@ -89,10 +93,17 @@ def _best_start(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
     ]
     best = min(begun, key=lambda f: f.chi2, default=fit)
     again = fit_model(
-        rows, best.model, free_parameters(best.model), iterations=_AGAIN, enough=_ENOUGH,
+        whole, best.model, free_parameters(best.model), iterations=_AGAIN, enough=_ENOUGH,
         units=units,
     )
     return again if again.chi2 < fit.chi2 else fit
+
+
+def _telling(rows: Sequence[RecordRows], fit: ModelFit) -> Sequence[RecordRows]:
+    """Return the records with the greatest misfits: starts are tried on these."""
+    ends = np.cumsum([r.target.size for r in rows])[:-1]
+    misfits = [float(np.sum(part**2)) for part in np.split(fit.residual, ends)]
+    return [rows[i] for i in np.sort(np.argsort(misfits)[::-1][:_TRIED])]
 
 
 def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
