@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import nnls
 
-from discover.motion_fit.noise import density_between_lines, line_power
+from discover.motion_fit.noise import density_between_lines
+from discover.motion_fit.noise_spectrum import noise_spectrum
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
 from discover.records import Record
 from discover.sine_fit import harmonic_design, harmonic_series
@@ -132,14 +133,13 @@ def observe_sine(
     multiples: Array = frequency * np.arange(count + 1, dtype=np.float64)
     if record.uniform:
         density = density_between_lines(residual, record.step, frequency, multiples)
-        last = int(0.5 / record.step / frequency)
-        every: Array = frequency * np.arange(1.0, last + 1.0)
-        spread = every[:: max(every.size // 64, 1)]
-        level = density_between_lines(residual, record.step, frequency, spread)
-        noise_power = float(np.mean(level)) * 0.5 / record.step
-        noise_power += line_power(residual, record.step, frequency, float(np.mean(level)))
-        noise = float(np.sqrt(noise_power))
+        advance = 0.0 if displacement is None else float(np.angle(displacement[1])) + 0.5 * np.pi
+        spectrum = noise_spectrum(
+            time, force, frequency, record.step, 2.0 * np.pi * frequency * time + advance
+        )
+        noise = float(np.sqrt(spectrum.power))
     else:
+        spectrum = None
         freedom = max(time.size - design.shape[1], 1)
         density = np.full(count + 1, 2.0 * duration / time.size * (residual @ residual) / freedom)
         noise = float(np.sqrt(residual @ residual / freedom))
@@ -175,6 +175,7 @@ def observe_sine(
         at_samples=lambda column: column,
         displacement_noise=displacement_noise,
         force_noise=noise,
+        noise=spectrum,
         cutoff=None,
         phase_fitted=fitted_phase,
         drift=drift,

@@ -6,8 +6,6 @@ import numpy as np
 
 from models.checks import Array
 
-_LINE = 15.0  # times the level: noise alone is above it once in three million bins
-_FOLDED = 5.0  # sampling rates up to which harmonics are followed
 _GAPS = 3.0  # between harmonics, to either side of a line
 _OCTAVE = 0.3  # of a line's frequency, to either side of it
 _MEDIAN_EFFICIENCY = 0.6
@@ -82,40 +80,6 @@ def density_between_lines(
         result[index] = float(np.median(some)) / _median_of_exponentials(some.size)
         result[index] *= _doubt(some.size)
     return result
-
-
-def line_power(residual: Array, step: float, frequency: float, level: float) -> float:
-    """Return the power of lines that are none of the test's harmonics: mains hum, above all.
-
-    Parameters
-    ----------
-    residual : ndarray, shape (N,)
-        What a fit of the harmonics left.
-    step : float
-        Sampling interval, s.
-    frequency : float
-        Of the test, Hz.
-    level : float
-        One-sided density of the noise between lines.
-
-    Returns
-    -------
-    float
-        Squared units of the signal. Bins where harmonics above the Nyquist frequency fold back
-        are left out.
-    """
-    frequencies, density = power_density(residual, step)
-    rate = 1.0 / step
-    spacing = frequency / frequencies[1]
-    distance = np.abs(np.mod(frequencies / frequency + 0.5, 1.0) - 0.5) * spacing
-    high = frequency * np.arange(1, int(_FOLDED * rate / frequency))
-    folded = np.abs(high - rate * np.round(high / rate))
-    near = np.zeros(frequencies.size, dtype=bool)
-    bins = np.round(folded / frequencies[1]).astype(np.int_)
-    for offset in (-2, -1, 0, 1, 2):
-        near[np.clip(bins + offset, 0, frequencies.size - 1)] = True
-    lines = (density > _LINE * level) & (distance > 1.5) & ~near
-    return float(np.sum(density[lines] - level) * frequencies[1])
 
 
 def _doubt(bins: int) -> float:

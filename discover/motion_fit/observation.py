@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from discover.motion_fit.noise_spectrum import NoiseSpectrum
 from discover.records import Record
 from models.checks import Array
 from models.motion import Motion
@@ -93,6 +94,8 @@ class Observation:
     late: Callable[[float], Motion] | None = None
     """The motion some seconds earlier, which a late force channel belongs to; None where only
     the force's lines can be shifted."""
+    noise: NoiseSpectrum | None = None
+    """Of the force in a sine test that was sampled uniformly."""
     usable: slice = field(default_factory=lambda: slice(None))
     """Samples of the record that are used."""
 

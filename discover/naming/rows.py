@@ -15,7 +15,6 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from discover.motion_fit import Observation, real_rows
-from discover.naming.noise import noise_density
 from discover.sine_fit import harmonic_design
 from models.checks import Array
 from models.constitutive import FittedTerm
@@ -110,13 +109,12 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
     basis, triangle = np.linalg.qr(np.concatenate(parts, axis=1))
     basis *= np.sign(np.diagonal(triangle))
     order = np.concatenate(([0.0], np.repeat(np.arange(1.0, count + 1), 2), lines)).astype(int)
-    if observation.record.uniform:
-        at, density = noise_density(observation, _SLOW)
+    if observation.noise is not None:
         wanted = order * frequency
         wanted[0] = _MEAN_AT / duration
         wanted[2 * count + 1 : 2 * count + 1 + _SLOW] = 0.5 * np.arange(1, _SLOW + 1) / duration
-        smooth = np.exp(np.interp(np.log(wanted), np.log(at), np.log(density)))
-        variance = 0.5 * smooth * size / duration + size * _TOLERANCE**2 * window.power
+        variance = 0.5 * observation.noise.at(wanted) * size / duration
+        variance += size * _TOLERANCE**2 * window.power
     else:
         variance = size * (window.variance + _TOLERANCE**2 * window.power)[order]
     variance[2 * count + 1 :] *= _SLOW_DOUBT

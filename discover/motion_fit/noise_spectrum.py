@@ -1,0 +1,145 @@
+"""The force's noise in a sine test: a smooth spectrum from between its harmonics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from discover.motion_fit.noise import power_density
+from discover.motion_fit.repetition import Unrepeated, unrepeated
+from discover.sine_fit import harmonic_design
+from models.checks import Array
+
+_MOST_HARMONICS = 100
+_SLOW = 3
+_FEWEST_BINS = 14
+_BINS = 48
+_SLOPE_FROM = 8
+_STEEPEST = 2.0
+_CLEAR = 1.6
+_LEAST_LEFT = 0.2
+_REVERSALS = (0.01, 0.03, 0.1)
+_LINE = 15.0  # times the level: noise alone is above it once in three million bins
+
+
+@dataclass(frozen=True)
+class NoiseSpectrum:
+    """A smooth density of noise."""
+
+    frequencies: Array
+    """(K,) Hz, rising."""
+    density: Array
+    """(K,) one-sided, N^2/Hz."""
+    power: float
+    """N^2: mean square of the noise, with mains hum and other lines that are no harmonics."""
+
+    def at(self, frequencies: Array) -> Array:
+        """Return the density at other frequencies (Hz), N^2/Hz."""
+        known = np.log(self.frequencies), np.log(self.density)
+        return np.asarray(np.exp(np.interp(np.log(frequencies), *known)))
+
+
+def noise_spectrum(
+    time: Array, force: Array, frequency: float, step: float, phase: Array
+) -> NoiseSpectrum:
+    """Return the noise of a sine test's force.
+
+    What repeats from cycle to cycle and every slow change is taken out first; what then lies
+    between the harmonics is averaged (by medians, so that hum does not count) over ever wider
+    ranges of frequency.
+
+    Parameters
+    ----------
+    time, force : ndarray, shape (N,)
+        s and N, on a grid of `step` of which samples may be missing.
+    frequency : float
+        Of the test, Hz.
+    step : float
+        Sampling interval, s.
+    phase : ndarray, shape (N,)
+        rad, of the displacement, a sine: friction jumps where its cosine changes sign.
+    """
+    found = unrepeated(time, force, frequency, step)
+    if found is None:
+        found = _between_harmonics(time, force, frequency, step, phase)
+    edges = np.geomspace(found.frequencies[0], found.frequencies[-1] * 1.001, _BINS + 1)
+    middle, level, start = list[float](), list[float](), 0
+    power, below = 0.0, 0.5 * found.width
+    for edge in edges[1:]:
+        stop = int(np.searchsorted(found.frequencies, edge))
+        if stop - start >= _FEWEST_BINS or (edge == edges[-1] and stop - start >= 3):
+            some = found.density[start:stop]
+            middle.append(float(np.exp(np.mean(np.log(found.frequencies[start:stop])))))
+            level.append(_level(some))
+            power += level[-1] * (edge - below)
+            power += float(np.sum(np.maximum(some - _LINE * level[-1], 0.0))) * found.width
+            start, below = stop, edge
+    if not middle:
+        level = [float(np.mean(found.density))]
+        return NoiseSpectrum(np.array([frequency]), np.array(level), 0.5 * level[0] / step)
+    power += level[-1] * max(0.5 / step - below, 0.0)
+    at, density = _with_rise(np.array(middle), np.array(level), 0.1 * found.width)
+    return NoiseSpectrum(at, density, power)
+
+
+def _between_harmonics(
+    time: Array, force: Array, frequency: float, step: float, phase: Array
+) -> Unrepeated:
+    """Return what a fit of many harmonics leaves: the cycles are too few to compare them."""
+    per_cycle = 1.0 / (step * frequency)
+    count = int(min(_MOST_HARMONICS, 0.45 * per_cycle, (time.size - 8) // 4))
+    design = harmonic_design(time, frequency, count)[:, : 2 * count + 1]
+    late = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
+    trend = np.polynomial.legendre.legvander(late, _SLOW)[:, 1:]
+    whole = np.concatenate([design, trend, _jumps(phase)], axis=1)
+    gram = whole.T @ whole + 1e-9 * time.size * np.eye(whole.shape[1])
+    left = force - whole @ np.linalg.solve(gram, whole.T @ force)
+    at = np.rint((time - time[0]) / step).astype(int)
+    residual = np.zeros(at[-1] + 1)
+    residual[at] = left
+    frequencies, density = power_density(residual, step)
+    width = frequencies[1]
+    distance = np.abs(np.mod(frequencies / frequency + 0.5, 1.0) - 0.5) * frequency / width
+    clear = np.flatnonzero((distance > _CLEAR) & (frequencies > 1.5 * width))
+    if clear.size < 2 * _FEWEST_BINS:
+        clear = np.arange(2, frequencies.size)
+        cycles = frequency / width  # of so many bins a harmonic, the fit has emptied one
+        density = density / max(1.0 - 1.0 / cycles, _LEAST_LEFT)
+    clear = clear[frequencies[clear] < (count + 0.5) * frequency]
+    return Unrepeated(frequencies[clear], density[clear], float(width))
+
+
+def _jumps(phase: Array) -> Array:
+    """Return what jumps where motion reverses: its harmonics beyond Nyquist alias between lines."""
+    v, x = np.cos(phase), np.sin(phase)
+    direction = np.sign(v)
+    columns = [np.tanh(v / s) for s in _REVERSALS]
+    return np.stack([direction, direction * x, *columns], axis=1)
+
+
+def _level(density: Array) -> float:
+    """Return the level of exponentially scattered densities, whatever the greatest one is.
+
+    The median does not see a hum; the mean of all but the greatest does see a resonance. A hum
+    also fills the bins beside its own.
+    """
+    middle = float(np.median(density)) / float(np.log(2.0))
+    top = int(np.argmax(density))
+    if density[top] > _LINE * middle:
+        return max(middle, float(np.mean(np.delete(density, slice(max(top - 2, 0), top + 3)))))
+    expected = density.size - float(np.sum(1.0 / np.arange(1, density.size + 1)))
+    return max(middle, float(density.sum() - density[top]) / expected)
+
+
+def _with_rise(frequencies: Array, level: Array, lowest: float) -> tuple[Array, Array]:
+    """Return a density continued to `lowest` along the slope of its lower part.
+
+    Below a test's frequency hardly a line is clear, and that is where drifting noise is strongest.
+    """
+    few = min(_SLOPE_FROM, frequencies.size)
+    if few < 3:
+        return frequencies, level
+    slope = np.polyfit(np.log(frequencies[:few]), np.log(level[:few]), 1)[0]
+    rise = (lowest / frequencies[0]) ** float(np.clip(slope, -_STEEPEST, 0.0))
+    return np.append(lowest, frequencies), np.append(level[0] * rise, level)

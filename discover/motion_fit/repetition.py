@@ -1,0 +1,188 @@
+"""What of a sine test's force does not repeat from cycle to cycle: the spectrum of its noise.
+
+The force is compared with what other cycles measured at the same phase, by a straight line over
+one sample's width of phase. So impacts and the jumps of friction, whose harmonics go on beyond
+the Nyquist frequency and fold back between the lines, do not count as noise: they repeat.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from discover.motion_fit.noise import power_density
+from discover.sine_fit import harmonic_design
+from models.checks import Array
+
+FEWEST_CYCLES = 2.5
+_HALF_WIDTH = 0.75  # of a sample's share of the cycle, to either side
+_LEAST_WEIGHT = 1e-3
+_SLOPED = 1e-3  # of the weights' square, by which their phases have to differ for a slope
+_HARMONICS = 31
+_RESOLVED = 0.12  # of the sampling rate: what is slower is smooth over one sample
+_SLOW = 3
+_CHANGING = 5  # harmonics whose size may change slowly
+_ALONE = 0.95  # of a sample in its own comparison: no other cycle was near
+_ROUGH = 3.0  # times the median of what phases leave, above which a phase is left out
+_AROUND = 4.0  # samples to either side of a phase that are judged with it
+_LEAST_KEPT = 0.25  # of the samples; with fewer, none is left out
+_SAMPLES_EACH = 120  # for every harmonic that may change
+_PROBED = 48  # samples at which the comparison's response is evaluated
+_NEAREST = 8  # samples in phase, to either side, that one is compared with at most
+_LEAST_GAIN = 0.35  # of the noise's power, that has to be left beside a harmonic
+_CLEAR = 1.5  # bins from a harmonic: nearer ones also see what changes it slowly
+_ENOUGH_BINS = 30
+Kept = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Unrepeated:
+    """The periodogram of what does not repeat."""
+
+    frequencies: Array
+    """(B,) Hz: away from harmonics, where the noise is left."""
+    density: Array
+    """(B,) one-sided, N^2/Hz, corrected for what the comparison takes away."""
+    width: float
+    """Hz between neighbouring bins of the whole spectrum."""
+
+
+def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unrepeated | None:
+    """Return the noise of a sine test's force from what differs between its cycles.
+
+    Parameters
+    ----------
+    time, force : ndarray, shape (N,)
+        s and N, on a grid of `step` of which samples may be missing.
+    frequency : float
+        Of the test, Hz.
+    step : float
+        Sampling interval, s.
+
+    Returns
+    -------
+    Unrepeated or None
+        None with fewer than two and a half cycles.
+    """
+    duration = float(time[-1] - time[0])
+    if duration * frequency < FEWEST_CYCLES:
+        return None
+    phase = np.mod((time - time[0]) * frequency, 1.0)
+    order = np.argsort(phase, kind="stable")
+    same = _same_phase(phase[order], order, _HALF_WIDTH * step * frequency)
+    cycles = time.size * step * frequency
+    own = same.diagonal()
+    steady = _without_lowest(time, force, frequency, step)
+    repeated = same @ steady
+    left = steady - repeated
+    kept = _smooth_phases(left, own, order, cycles)
+    left = _without_changes(same, time, left, repeated, frequency, kept)
+    kept = _smooth_phases(left, own, order, cycles)
+    at = np.rint((time - time[0]) / step).astype(int)
+    whole = np.zeros(at[-1] + 1)
+    whole[at] = np.where(kept, left, 0.0)
+    frequencies, density = power_density(whole, step)
+    share = np.zeros(whole.size)
+    share[at] = kept
+    taper = np.hanning(whole.size + 2)[1:-1] ** 2
+    gain = _response(same, time, np.flatnonzero(kept), frequencies)
+    gain *= float(taper @ share) / float(np.sum(taper))
+    spacing = frequency / frequencies[1]
+    apart = np.abs(np.mod(frequencies / frequency + 0.5, 1.0) - 0.5) * spacing
+    seen = gain > _LEAST_GAIN * float(np.max(gain))
+    seen[:2] = False
+    clear = seen & (apart > _CLEAR)
+    if np.count_nonzero(clear) < _ENOUGH_BINS:
+        clear = seen
+    return Unrepeated(frequencies[clear], density[clear] / gain[clear], float(frequencies[1]))
+
+
+def _without_lowest(time: Array, force: Array, frequency: float, step: float) -> Array:
+    """Return a force without its lowest harmonics.
+
+    A straight line over one sample's width does not miss the curvature of what is left.
+    """
+    count = int(np.clip(_RESOLVED / (step * frequency), 1, min(_HARMONICS, time.size // 8)))
+    design = harmonic_design(time, frequency, count)
+    found = np.linalg.solve(design.T @ design, design.T @ force)
+    periodic = 2 * count + 1
+    return np.asarray(force - design[:, :periodic] @ found[:periodic])
+
+
+def _without_changes(
+    same: csr_array, time: Array, left: Array, repeated: Array, frequency: float, kept: Kept
+) -> Array:
+    """Return what cycles differ by, but for what changes slowly: that is no noise.
+
+    The mean may change, and the size of what repeats and of its lowest harmonics.
+    """
+    late = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
+    slow = np.polynomial.legendre.legvander(late, _SLOW)[:, 1:]
+    lowest = harmonic_design(time, frequency, min(_CHANGING, time.size // _SAMPLES_EACH))
+    carriers = np.column_stack([lowest, repeated])
+    changes = (slow[:, :, None] * carriers[:, None, :]).reshape(time.size, -1)
+    moved = changes - same @ changes
+    moved /= np.maximum(np.linalg.norm(moved, axis=0), 1e-300)
+    return np.asarray(left - moved @ np.linalg.lstsq(moved[kept], left[kept], rcond=1e-9)[0])
+
+
+def _same_phase(phase: Array, order: NDArray[np.intp], half: float) -> csr_array:
+    """Return what maps a force (N,) to the line through it around each sample's phase.
+
+    `phase` rises; `order` says which sample each belongs to.
+    """
+    size = phase.size
+    around = np.concatenate([phase - 1.0, phase, phase + 1.0])
+    here = np.arange(size, 2 * size)
+    first = np.maximum(np.searchsorted(around, phase - half, side="left"), here - _NEAREST)
+    last = np.minimum(np.searchsorted(around, phase + half, side="right"), here + _NEAREST + 1)
+    count = last - first
+    row = np.repeat(np.arange(size), count)
+    begin = np.cumsum(count) - count
+    column = np.arange(row.size) + np.repeat(first - begin, count)
+    away = (around[column] - phase[row]) / half
+    weight = np.maximum(1.0 - away**2, _LEAST_WEIGHT)
+    zeroth, one, two = (np.bincount(row, weight * away**k, size) for k in range(3))
+    spread = zeroth * two - one**2
+    sloped = spread > _SLOPED * zeroth**2
+    line = weight * (two[row] - one[row] * away) / np.where(sloped, spread, 1.0)[row]
+    weight = np.where(sloped[row], line, weight / zeroth[row])
+    return csr_array((weight, (order[row], order[column % size])), shape=(size, size))
+
+
+def _smooth_phases(
+    left: Array, own: Array, order: NDArray[np.intp], cycles: float
+) -> Kept:
+    """Return which samples lie at phases where neighbours in phase agree but for noise."""
+    known = own < _ALONE
+    square = np.where(known, left**2 / np.where(known, 1.0 - own, 1.0), 0.0)[order]
+    number = known[order].astype(np.float64)
+    reach = min(int(np.ceil(_AROUND * cycles)), (left.size - 1) // 2)
+
+    def around(values: Array) -> Array:
+        closed = np.concatenate([values[-reach:], values, values[:reach]])
+        total = np.concatenate(([0.0], np.cumsum(closed)))
+        return np.asarray(total[2 * reach + 1 :] - total[: -2 * reach - 1])
+
+    mean = around(square) / np.maximum(around(number), 1.0)
+    smooth = np.zeros(left.size, dtype=np.bool_)
+    smooth[order] = mean < _ROUGH * float(np.median(mean))
+    kept = np.asarray(known & smooth)
+    return kept if np.mean(kept) > _LEAST_KEPT else known
+
+
+def _response(
+    same: csr_array, time: Array, kept: NDArray[np.intp], frequencies: Array
+) -> Array:
+    """Return the power that the comparison leaves of a wave, mean over samples, (F,)."""
+    chosen = kept[np.unique(np.linspace(0, kept.size - 1, _PROBED).astype(int))]
+    total = np.zeros(frequencies.size)
+    for i in chosen:
+        part = slice(same.indptr[i], same.indptr[i + 1])
+        later = time[same.indices[part]] - time[i]
+        wave = np.exp(2j * np.pi * np.outer(later, frequencies))
+        total += np.abs(1.0 - same.data[part] @ wave) ** 2
+    return np.asarray(total / chosen.size)
