@@ -17,12 +17,11 @@ from discover.gap.stages import Stage, left_out, stage
 from discover.naming.candidates import Part, Variant, scales_of, variants
 from discover.naming.columns import candidate_columns, without_span
 from discover.naming.fit import ModelFit, fit_model, free_parameters
+from discover.naming.forces import DELAY, is_joint
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 
-# Simulated as a whole: there is no family of shapes that could stand side by side.
-_WHOLE = ("backlash", "cavitation", "series-compliance", "time-delay")
 _POWERS = {
     "asymmetric-damping": (0.5, 1.0, 1.5, 2.0, 3.0),
     "position-dependent-friction": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0),
@@ -102,8 +101,12 @@ def corrected(
 def with_member(
     rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str]
 ) -> tuple[str, ModelFit] | None:
-    """Return the fit with that member of the effects' families that explains most, and whose."""
-    members = [m for e in effects if e not in _WHOLE for m in _family(rows, fit.model, e)]
+    """Return the fit with that member of the effects' families that explains most, and whose.
+
+    What is simulated as a whole, or shifts all, has no family that could stand side by side.
+    """
+    some = [e for e in effects if not is_joint(e) and e != DELAY]
+    members = [m for e in some for m in _family(rows, fit.model, e)]
     if not members:
         return None
     raw = candidate_columns(rows, fit.model, [Variant(m.id, (m,), 0) for m in members])

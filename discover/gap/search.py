@@ -11,8 +11,9 @@ from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
 from discover.naming.contest import AGREES, UNKNOWN, Contest, reweighed, run_contest
 from discover.naming.fit import ModelFit, fit_model, free_parameters
+from discover.naming.forces import has_joint, is_joint
 from discover.naming.refine import extended, refine
-from discover.naming.restart import has_joint, is_joint, polished, restarted
+from discover.naming.restart import polished, restarted
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 
@@ -251,7 +252,7 @@ def _contest(
     if contest.ranked[0][0] != UNKNOWN or best not in fits or not is_joint(best):
         return contest, fits
     # A joint's first start seldom leads to its best fit: none shall be unknown for that.
-    fits[best] = restarted(rows, fits[best], len(fits[best].model.terms) - 1)
+    fits[best] = restarted(rows, fits[best])
     return reweighed(rows, contest, fit, fits, effects), fits
 
 
@@ -269,7 +270,7 @@ def _mended(
     if name == "time-delay":
         return _aligned(rows, mended)
     if is_joint(name):
-        mended = restarted(rows, mended, len(mended.model.terms) - 1)
+        mended = restarted(rows, mended)
     return polished(rows, mended) if has_joint(mended.model) else mended
 
 

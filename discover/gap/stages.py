@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from discover.gap.accuracy import Misfit, misfit, pooled
 from discover.naming.fit import ModelFit, UnitRows, fit_model, whole_model
-from discover.naming.forces import model_force
-from discover.naming.restart import has_joint
+from discover.naming.forces import has_joint, model_force
 from discover.naming.rows import RecordRows
+from models.checks import Array
 from models.constitutive import ForceModel
 
 _FOLDS = 16
@@ -50,19 +52,30 @@ def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
         return ()
     if not fit.parameters:
         return tuple(record_misfit(r, fit.model) for r in rows)
-    seen = [r.samples for r in rows] if has_joint(fit.model) else rows
+    joint = has_joint(fit.model)
+    seen = [r.samples for r in rows] if joint else rows
     units = UnitRows()
+    along = _tangents_of_each(seen, fit, units) if joint else None
     found: dict[int, Misfit] = {}
     folds = min(len(rows), _FOLDS)
     for fold in range(folds):
-        rest = [r for i, r in enumerate(seen) if i % folds != fold]
+        rest = [i for i in range(len(rows)) if i % folds != fold]
         refit = fit_model(
-            rest, fit.model, fit.parameters, iterations=_LEFT_OUT_STEPS, enough=_LEFT_OUT_ENOUGH,
-            units=units, exact=False,
+            [seen[i] for i in rest], fit.model, fit.parameters, iterations=_LEFT_OUT_STEPS,
+            enough=_LEFT_OUT_ENOUGH, units=units, exact=False,
+            along=None if along is None else np.concatenate([along[i] for i in rest], axis=1),
         )
         for i in range(fold, len(rows), folds):
             found[i] = record_misfit(rows[i], refit.model)
     return tuple(found[i] for i in range(len(rows)))
+
+
+def _tangents_of_each(
+    rows: Sequence[RecordRows], fit: ModelFit, units: UnitRows
+) -> list[Array]:
+    """Return the tangents of every record's rows at a fit."""
+    here = fit_model(rows, fit.model, fit.parameters, iterations=0, units=units, exact=False)
+    return np.split(here.tangents, np.cumsum([r.target.size for r in rows])[:-1], axis=1)
 
 
 def seen_gap(rows: Sequence[RecordRows], at: Stage) -> float:

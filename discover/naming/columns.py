@@ -38,10 +38,11 @@ def candidate_columns(
             [trial.on_cycle(t, s) for t, s in zip(terms, shapes, strict=True)], dtype=np.bool_
         )
         on_cycle, at_samples = np.flatnonzero(over), np.flatnonzero(~over)
-        if r.cycle_rows is not None and on_cycle.size:
-            block[over] = np.stack([forces[i] for i in on_cycle]) @ r.cycle_rows
-        if at_samples.size:
-            block[~over] = r.project(np.stack([forces[i] for i in at_samples]))
+        with np.errstate(over="ignore", invalid="ignore"):
+            if r.cycle_rows is not None and on_cycle.size:
+                block[over] = np.stack([forces[i] for i in on_cycle]) @ r.cycle_rows
+            if at_samples.size:
+                block[~over] = r.project(np.stack([forces[i] for i in at_samples]))
         blocks.append(block)
     rows_of_parts = np.concatenate(blocks, axis=1)
     with np.errstate(over="ignore", invalid="ignore"):

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.naming.forces import DELAY, Trial, change_on_cycle, model_force
+from discover.naming.forces import DELAY, Trial, change_on_cycle, is_joint, model_force
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
@@ -167,9 +167,14 @@ def _tangents(
 ) -> Array:
     """Return the change (P, R) of the rows with each parameter; `linear`: forces only add.
 
-    `rough` leaves out that a joint passes an added force on changed: enough for a step.
+    `rough` leaves out that a joint passes an added force on changed: enough for a step. What a
+    sensor makes of it is not left out, since a gain would keep steps from ever arriving.
     """
     result = np.empty((len(parameters), at.size))
+    rough = rough and not any(
+        t.term.acts == "output" and not is_joint(t.id) and t.id != DELAY
+        for r in rows for t in (*r.held, *model.terms)
+    )
     for index, parameter in enumerate(parameters):
         fitted = model.terms[parameter.term]
         value = value_of(model, parameter)
@@ -222,6 +227,7 @@ def fit_model(
     enough: float = _SMALL,
     units: UnitRows | None = None,
     exact: bool = True,
+    along: Array | None = None,
 ) -> ModelFit:
     """Return the model with `parameters` fitted, started from its own values.
 
@@ -241,6 +247,9 @@ def fit_model(
         Rows that are known already, where several fits share records.
     exact : bool
         Whether the fit's tangents hold what a joint does to an added force.
+    along : array, optional
+        (P, R) tangents at the start, kept for all steps: for models that simulate a joint, where
+        the start is close and tangents cost most.
     """
     target = np.concatenate([r.target for r in rows])
     units = UnitRows() if units is None else units
@@ -249,7 +258,13 @@ def fit_model(
         model = _solved(rows, units, model, parameters, target)
     at = units.of_model(rows, model)
     chi2 = float(np.sum((target - at) ** 2))
-    tangents = _tangents(rows, units, model, parameters, at, linear=linear, rough=True)
+
+    def slopes() -> Array:
+        if along is not None:
+            return along
+        return _tangents(rows, units, model, parameters, at, linear=linear, rough=True)
+
+    tangents = slopes()
     settled = linear and all(p.shape is None for p in parameters)
     damping, idle = _DAMPING, 0
     for _ in range(0 if settled or not np.isfinite(chi2) else iterations):
@@ -275,7 +290,7 @@ def fit_model(
             damping = max(10.0 * damping, _DAMPING)
         if chi2 == before:
             break
-        tangents = _tangents(rows, units, model, parameters, at, linear=linear, rough=True)
+        tangents = slopes()
         idle = idle + 1 if before - chi2 <= enough * max(chi2, 1.0) else 0
         if idle == 2:
             break

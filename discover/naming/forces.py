@@ -11,7 +11,7 @@ from discover.motion_fit import Observation
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
-from models.terms import Shape, Term
+from models.terms import TERMS, Shape, Term
 from models.terms.time_delay import between_samples
 
 DELAY = "time-delay"
@@ -21,6 +21,16 @@ def needs_cycle(term: Term, shape: Shape) -> bool:
     """Tell whether a term has memory: it then sees one cycle of the steady state."""
     remembers = term.follows == "path" or shape.get("presliding", 0.0) > 0.0
     return term.acts != "force" or remembers
+
+
+def has_joint(model: ForceModel) -> bool:
+    """Tell whether something in a model moves through a joint, with impacts."""
+    return any(is_joint(t.id) for t in model.terms)
+
+
+def is_joint(effect: str) -> bool:
+    """Tell whether an effect is a joint, simulated in time."""
+    return TERMS[effect].acts == "input" or effect == "cavitation"
 
 
 def _from_cycle(observation: Observation, force: Array) -> Array:

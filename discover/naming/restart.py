@@ -11,7 +11,6 @@ from discover.naming.candidates import Scales, scales_of
 from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
-from models.terms import TERMS
 
 _FACTORS = {  # of a joint's shape
     "contact": (0.4, 1.0, 2.5), "gap": (0.7, 0.85, 1.0, 1.2), "limit": (0.95, 1.0, 1.05)
@@ -32,16 +31,6 @@ _POLISH = 6
 _GOOD = 1.5  # of chi-square a row, up to which no other start is sought
 
 
-def has_joint(model: ForceModel) -> bool:
-    """Tell whether something in a model moves through a joint, with impacts."""
-    return any(is_joint(t.id) for t in model.terms)
-
-
-def is_joint(effect: str) -> bool:
-    """Tell whether an effect is a joint, simulated in time."""
-    return TERMS[effect].acts == "input" or effect == "cavitation"
-
-
 def polished(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     """Return a fit through a joint as the samples tell, which see when impacts happen."""
     samples = [r.samples for r in rows]
@@ -54,8 +43,8 @@ def polished(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     return fit_model(rows, better.model, fit.parameters, iterations=0)
 
 
-def restarted(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
-    """Return the best of the fit and fits from other shapes of the joint in its term `at`.
+def restarted(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+    """Return the best of the fit and fits from other shapes of the joint that is its last term.
 
     Parameters
     ----------
@@ -63,37 +52,35 @@ def restarted(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
         Records that are fitted.
     fit : ModelFit
         Where the first start led; returned as it is where it leaves little.
-    at : int
-        Index of the joint's term.
     """
     for _ in range(_TURNS):
         if fit.chi2 < _GOOD * fit.residual.size:
             break
-        before, fit = fit.chi2, _best_start(rows, fit, at)
+        before, fit = fit.chi2, _best_start(rows, fit)
         if fit.chi2 > _MUCH * before:
             break
     return fit
 
 
-def _best_start(rows: Sequence[RecordRows], fit: ModelFit, at: int) -> ModelFit:
-    joint = fit.model.terms[at]
+def _best_start(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+    *rest, joint = fit.model.terms
     units = UnitRows()
-    whole, rows = rows, _telling(rows, fit)
+    telling = _telling(rows, fit)
     starts = []
     for other in _others(joint, scales_of([r.observation for r in rows])):
-        model = _with(fit.model, at, other)
-        starts.append(fit_model(rows, model, (), units=units))
+        model = ForceModel((*rest, other), fit.model.name)
+        starts.append(fit_model(telling, model, (), units=units))
     starts.sort(key=lambda f: f.chi2)
     begun = [
         fit_model(
-            rows, s.model, free_parameters(s.model), iterations=_FIRST_STEPS, units=units,
+            telling, s.model, free_parameters(s.model), iterations=_FIRST_STEPS, units=units,
             exact=False,
         )
         for s in starts[:_FIRST]
     ]
     best = min(begun, key=lambda f: f.chi2, default=fit)
     again = fit_model(
-        whole, best.model, free_parameters(best.model), iterations=_AGAIN, enough=_ENOUGH,
+        rows, best.model, free_parameters(best.model), iterations=_AGAIN, enough=_ENOUGH,
         units=units,
     )
     return again if again.chi2 < fit.chi2 else fit
@@ -133,9 +120,3 @@ def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
         shape = {n: joint.shape[n] * f for n, f in zip(names, factors, strict=True)}
         found.append(FittedTerm(joint.id, 1.0, {**joint.shape, **shape, "loss": loss, **choice}))
     return found
-
-
-def _with(model: ForceModel, at: int, term: FittedTerm) -> ForceModel:
-    terms = list(model.terms)
-    terms[at] = term
-    return ForceModel(tuple(terms), model.name)

@@ -86,3 +86,35 @@ def test_the_shapes_of_one_kind_differ_only_in_what_a_fit_changes():
     assert kind_of(sharp) == kind_of({**sharp, "gap": 0.02, "exponent": 1.2})
     assert kind_of(sharp) != kind_of({**sharp, "side": -1.0})
     assert kind_of({"transition_speed": 0.0}) != kind_of({"transition_speed": 0.01})
+
+
+@pytest.mark.parametrize("gain", [0.27, -0.1])
+def test_a_range_s_gain_is_found_though_it_moves_the_model_s_own_peaks(gain):
+    """The threshold lies between measured peaks; the model's are those without the gain."""
+
+    def law(t, x, v, a):
+        force = device(t, x, v, a)
+        return (1.0 + gain) * force if np.abs(force).max() > 300.0 else force
+
+    rows = rows_of(law)
+    peaks = sorted(float(np.abs(r.observation.measured).max()) for r in rows)
+    after = next(i for i, p in enumerate(peaks) if p > 300.0 * (1.0 + gain))
+    begin = model(
+        ("inertia", 100.0),
+        ("viscous-damping", 1000.0),
+        ("sensor-gain", 0.01, {"threshold": np.sqrt(peaks[after - 1] * peaks[after])}),
+    )
+    fit = fitted(rows, begin)
+    assert [t.coefficient for t in fit.model.terms] == pytest.approx([120.0, 800.0, gain], rel=0.01)
+    assert fit.chi2 < 1.3 * fit.residual.size
+
+
+def test_a_clipped_channel_s_device_is_found_while_it_clips():
+    def law(t, x, v, a):
+        return np.minimum(device(t, x, v, a), 250.0)
+
+    limit = {"limit": 240.0, "softness": 0.0, "side": 1.0}
+    begin = model(("inertia", 100.0), ("viscous-damping", 600.0), ("sensor-clipping", 0.8, limit))
+    fit = fitted(rows_of(law), begin)
+    assert [t.coefficient for t in fit.model.terms] == pytest.approx([120.0, 800.0, 1.0], rel=0.02)
+    assert fit.model.terms[-1].shape["limit"] == pytest.approx(250.0, rel=0.01)

@@ -5,7 +5,8 @@ import pytest
 
 from discover.motion_fit import observe
 from discover.naming.fit import fit_model, free_parameters
-from discover.naming.restart import has_joint, is_joint, polished, restarted
+from discover.naming.forces import has_joint, is_joint
+from discover.naming.restart import polished, restarted
 from discover.naming.rows import record_rows
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import sine_motion
@@ -38,7 +39,7 @@ def test_a_start_in_another_hollow_is_left(play):
     wrong = FittedTerm("backlash", 0.6, {**PLAY, "gap": 2.7e-4, "contact": 180.0})
     model = ForceModel((*DEVICE, wrong))
     stuck = fit_model(play, model, free_parameters(model), iterations=8)
-    found = restarted(play, stuck, 2)
+    found = restarted(play, stuck)
     assert found.chi2 < 0.05 * stuck.chi2
     assert found.model.terms[2].shape["gap"] == pytest.approx(PLAY["gap"], rel=0.03)
     assert abs(stuck.model.terms[2].shape["gap"] / PLAY["gap"] - 1.0) > 0.1
@@ -47,7 +48,7 @@ def test_a_start_in_another_hollow_is_left(play):
 def test_a_good_start_is_kept(play):
     model = ForceModel((*DEVICE, FittedTerm("backlash", 1.0, PLAY)))
     good = fit_model(play, model, free_parameters(model), iterations=2)
-    assert restarted(play, good, 2) is good
+    assert restarted(play, good) is good
 
 
 def test_samples_say_more_of_impacts_than_lines(play):
