@@ -17,7 +17,7 @@ from discover.gap.stages import Stage, left_out, stage
 from discover.naming.candidates import Part, Variant, scales_of, variants
 from discover.naming.columns import candidate_columns, without_span
 from discover.naming.fit import ModelFit, fit_model, free_parameters
-from discover.naming.forces import DELAY, is_joint
+from discover.naming.forces import DELAY, has_joint, is_joint
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
@@ -31,6 +31,7 @@ _CLOSE = 1.1  # times the noise floor, up to which no curve is corrected
 _WORTH = 0.05  # of the gap of records that were left out, that a correction has to close
 _LEAST = 0.02  # of the misfit, that a member has to explain
 _FEWEST = 20.0  # of chi-square, likewise
+_STEPS, _STEPS_BESIDE_JOINT = 40, 6
 _APART = 1e-4  # of a member's own square, that it has to add to what the model spans
 
 
@@ -120,7 +121,8 @@ def with_member(
     chosen = members[place]
     term = FittedTerm(chosen.id, float(along[place] / power[place]), chosen.shape)
     model = ForceModel((*fit.model.terms, term), fit.model.name)
-    return chosen.id, fit_model(rows, model, free_parameters(model))
+    steps = _STEPS_BESIDE_JOINT if has_joint(model) else _STEPS
+    return chosen.id, fit_model(rows, model, free_parameters(model), iterations=steps)
 
 
 def _family(rows: Sequence[RecordRows], model: ForceModel, effect: str) -> list[Part]:

@@ -228,6 +228,7 @@ def fit_model(
     units: UnitRows | None = None,
     exact: bool = True,
     along: Array | None = None,
+    stay: Array | None = None,
 ) -> ModelFit:
     """Return the model with `parameters` fitted, started from its own values.
 
@@ -250,6 +251,9 @@ def fit_model(
     along : array, optional
         (P, R) tangents at the start, kept for all steps: for models that simulate a joint, where
         the start is close and tangents cost most.
+    stay : array, optional
+        (P, P) curvature that draws the parameters to their start. For models that are not sums of
+        forces.
     """
     target = np.concatenate([r.target for r in rows])
     units = UnitRows() if units is None else units
@@ -265,6 +269,11 @@ def fit_model(
         return _tangents(rows, units, model, parameters, at, linear=linear, rough=True)
 
     tangents = slopes()
+    begun = np.array([value_of(model, p) for p in parameters])
+
+    def drawn(values: Array) -> float:
+        return 0.0 if stay is None else float((values - begun) @ stay @ (values - begun))
+
     settled = linear and all(p.shape is None for p in parameters)
     damping, idle = _DAMPING, 0
     for _ in range(0 if settled or not np.isfinite(chi2) else iterations):
@@ -273,22 +282,26 @@ def fit_model(
         unit = tangents / safe[:, None]
         gram, slope = unit @ unit.T, unit @ (target - at)
         old = np.array([value_of(model, p) for p in parameters])
-        before = chi2
+        if stay is not None:
+            gram = gram + stay / np.outer(safe, safe)
+            slope = slope - stay @ (old - begun) / safe
+        before, pull = chi2, drawn(old)
         for _ in range(_TRIES):
             step = np.linalg.lstsq(
                 gram + damping * np.eye(len(parameters)), slope, rcond=1e-12
             )[0]
-            trial = with_values(model, parameters, _bounded(model, parameters, old + step / safe))
+            values = _bounded(model, parameters, old + step / safe)
+            trial = with_values(model, parameters, values)
             if linear:
                 trial = _solved(rows, units, trial, parameters, target)
             rows_now = units.of_model(rows, trial)
             now = float(np.sum((target - rows_now) ** 2))
-            if now < chi2:
+            if now + drawn(values) < chi2 + pull:
                 model, at, chi2 = trial, rows_now, now
                 damping = max(damping / 10.0, _LEAST_DAMPING)
                 break
             damping = max(10.0 * damping, _DAMPING)
-        if chi2 == before:
+        else:
             break
         tangents = slopes()
         idle = idle + 1 if before - chi2 <= enough * max(chi2, 1.0) else 0
