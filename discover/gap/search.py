@@ -248,11 +248,16 @@ def _contest(
     )
     contest = run_contest(rows, fit, effects, reversal=reversal, tolerated=tolerated)
     contest, fits = refine(rows, fit, contest, effects)
-    best = next((e.effects[0] for e in contest.entries if len(e.effects) == 1), None)
-    if contest.ranked[0][0] != UNKNOWN or best not in fits or not is_joint(best):
+    simulated = all(r.cycle_rows is not None for r in rows)  # a long record takes minutes
+    if contest.ranked[0][0] != UNKNOWN or not simulated:
         return contest, fits
     # A joint's first start seldom leads to its best fit: none shall be unknown for that.
-    fits[best] = restarted(rows, fits[best])
+    for name in (e for e in contest.starts if is_joint(e)):
+        begun = fits.get(name)
+        if begun is None:
+            model = extended(fit.model, contest.starts[name][0])
+            begun = fit_model(rows, model, (), exact=False)
+        fits[name] = restarted(rows, begun)
     return reweighed(rows, contest, fit, fits, effects), fits
 
 

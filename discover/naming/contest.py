@@ -18,6 +18,7 @@ from scipy.special import logsumexp
 from discover.naming.candidates import Variant, scales_of, variants
 from discover.naming.columns import candidate_columns, reversal_doubt, without_span
 from discover.naming.fit import ModelFit, kind_of
+from discover.naming.forces import is_joint
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.terms import TERMS
@@ -33,8 +34,12 @@ _PRIOR_PAIR = -6.0
 _PAIR_DOUBT = 0.17  # nats a row: two shapes explain more by chance
 _UNKNOWN_SHARE = 0.6
 _UNKNOWN_COST = 3.0
-_UNKNOWN_LEAST = 1.0
-_UNKNOWN_SLOPE = 2.0
+_LEFT = 0.12  # of the misfit, at which a shape is as likely the effect's as another's
+_LEFT_BY_JOINT = 0.3  # likewise: contact and loss are simplified, and impacts hard to meet
+_LEFT_OF_FEW = 0.8  # likewise, where records are few
+_FEW = 4  # records
+_LEFT_SLOPE = 3.0
+_LEFT_MOST = 4.0  # nats
 _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
 _AN_ANSWER = 0.05
@@ -178,7 +183,8 @@ def run_contest(
             start = (target, chi2)
             pairs += _pairs(lead, best, chosen, spans, freed, start, evidence, informative)
     everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
-    probabilities = _probabilities(everything, effects, chi2 - noise, informative)
+    few = len(rows) < _FEW
+    probabilities = _probabilities(everything, effects, chi2 - noise, informative, few=few)
     return Contest(tuple(everything), probabilities, chi2 - noise, size, noise, tolerated, starts)
 
 
@@ -266,7 +272,8 @@ def _pairs(
 
 
 def _probabilities(
-    entries: Sequence[Entry], effects: Sequence[str], excess: float, informative: float
+    entries: Sequence[Entry], effects: Sequence[str], excess: float, informative: float, *,
+    few: bool,
 ) -> dict[str, float]:
     """Return the probability of every name.
 
@@ -285,16 +292,28 @@ def _probabilities(
     if excess > 0.0:
         explained = 0.5 * cost(_UNKNOWN_SHARE * excess, informative)
         scaled[UNKNOWN] = (-explained - _UNKNOWN_COST) / _TEMPERATURE
-        best = next((e for e in entries if e.effects), None)
-        if best is not None:
-            left = max(best.chi2 - (chi2 - excess), 0.0) / excess
-            doubt = _UNKNOWN_LEAST + _UNKNOWN_SLOPE * np.log(_UNKNOWN_SHARE / max(left, 1e-6))
-            scaled[UNKNOWN] = max(scaled[UNKNOWN], scaled[best.effects[0]] - max(doubt, 0.0))
+        named = [e for e in entries if e.effects]
+        if named:
+            left = [max(e.chi2 - (chi2 - excess), 0.0) / excess for e in named]
+            doubt = min(_doubt(e, share, few=few) for e, share in zip(named, left, strict=True))
+            scaled[UNKNOWN] = max(scaled[UNKNOWN], scaled[named[0].effects[0]] + doubt)
     total = float(logsumexp(list(scaled.values())))
     result = {k: float(np.exp(v - total)) for k, v in scaled.items()}
     for name in (*effects, AGREES, UNKNOWN):
         result.setdefault(name, 0.0)
     return result
+
+
+def _doubt(entry: Entry, left: float, *, few: bool) -> float:
+    """Return the nats by which what a hypothesis leaves says that none is right.
+
+    A shape that is really there leaves a few per cent of the misfit of many tests; one that is
+    not, but the nearest in the catalogue, a fifth and more. With a few, a wrong shape is hardly
+    told from one that is right beside something small.
+    """
+    usual = _LEFT_BY_JOINT if is_joint(entry.effects[0]) else _LEFT
+    usual = _LEFT_OF_FEW if few else usual
+    return float(min(_LEFT_SLOPE * np.log(max(left, 1e-6) / usual), _LEFT_MOST))
 
 
 def _over_time(rows: Sequence[RecordRows], before: Array, after: Array, effect: str) -> float:
@@ -340,5 +359,6 @@ def reweighed(
         value -= _over_time(rows, fit.residual, found.residual, e.effects[0])
         entries.append(replace(e, chi2=chi2, log_evidence=value))
     entries.sort(key=lambda e: -e.log_evidence)
-    chances = _probabilities(entries, effects, contest.excess, informative)
+    few = len(rows) < _FEW
+    chances = _probabilities(entries, effects, contest.excess, informative, few=few)
     return replace(contest, entries=tuple(entries), probabilities=chances)

@@ -143,3 +143,18 @@ def test_the_same_search_twice_is_the_same(offset):
     assert again.to_dict() == offset.to_dict()
     assert discover.close_gap is close_gap
     assert np.isfinite(again.unexplained_percent)
+
+
+def test_a_shape_that_no_entry_has_is_unknown_though_one_explains_most_of_it():
+    """Four fifths of it is damping that differs by direction, and the rest nothing known."""
+
+    def law(t, x, v, a):
+        along = 1.0 + 0.5 * np.sin(3.0 * x / np.abs(x).max())
+        return device(t, x, v, a) + 400.0 * np.abs(v) * along
+
+    found = close_gap(campaign(law), BASE)
+    assert found.rounds == ()
+    assert found.verdict == "unexplained"
+    (first, chance), (second, _) = found.last[:2]
+    assert (first, second) == ("unknown", "asymmetric-damping")
+    assert chance > 0.5
