@@ -257,7 +257,7 @@ def _contest(
         if begun is None:
             model = extended(fit.model, contest.starts[name][0])
             begun = fit_model(rows, model, (), exact=False)
-        fits[name] = restarted(rows, begun)
+        fits[name] = restarted(rows, begun, instead_of=fit)
     return reweighed(rows, contest, fit, fits, effects), fits
 
 

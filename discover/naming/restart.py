@@ -20,7 +20,7 @@ _LAGS = (0.03, 0.06, 0.12)  # of a valve, over the greatest angular frequency
 _SPRINGS = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # factors of a compliance
 _GASES = ((0.15, 0.3), (0.15, 0.7), (0.5, 0.3), (0.5, 0.7), (2.0, 0.9))  # of force, and share
 _SPRING_LOSS = 0.05
-_TRIED = 12  # records
+_TRIED = 8  # records
 _FIRST = 3  # that are begun
 _FIRST_STEPS = 3
 _AGAIN = 12
@@ -28,6 +28,7 @@ _ENOUGH = 0.003
 _TURNS = 3  # of starts around the best so far,
 _MUCH = 0.5  # as long as chi-square falls to this share
 _POLISH = 6
+_BY_FAR = 0.7  # of the misfit without the joint
 _GOOD = 1.5  # of chi-square a row, up to which no other start is sought
 
 
@@ -43,7 +44,9 @@ def polished(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     return fit_model(rows, better.model, fit.parameters, iterations=0)
 
 
-def restarted(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+def restarted(
+    rows: Sequence[RecordRows], fit: ModelFit, *, instead_of: ModelFit | None = None
+) -> ModelFit:
     """Return the best of the fit and fits from other shapes of the joint that is its last term.
 
     Parameters
@@ -52,25 +55,34 @@ def restarted(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
         Records that are fitted.
     fit : ModelFit
         Where the first start led; returned as it is where it leaves little.
+    instead_of : ModelFit, optional
+        Without the joint. Where no start is better by far, none is followed.
     """
     for _ in range(_TURNS):
         if fit.chi2 < _GOOD * fit.residual.size:
             break
-        before, fit = fit.chi2, _best_start(rows, fit)
+        before, fit = fit.chi2, _best_start(rows, fit, instead_of)
         if fit.chi2 > _MUCH * before:
             break
     return fit
 
 
-def _best_start(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+def _best_start(
+    rows: Sequence[RecordRows], fit: ModelFit, instead_of: ModelFit | None
+) -> ModelFit:
     *rest, joint = fit.model.terms
     units = UnitRows()
-    telling = _telling(rows, fit)
+    chosen = _telling(rows, fit if instead_of is None else instead_of)
+    telling = [rows[i] for i in chosen]
     starts = []
     for other in _others(joint, scales_of([r.observation for r in rows])):
         model = ForceModel((*rest, other), fit.model.name)
         starts.append(fit_model(telling, model, (), units=units))
     starts.sort(key=lambda f: f.chi2)
+    if instead_of is not None and starts:
+        misfits = _misfits(rows, instead_of)
+        if starts[0].chi2 > _BY_FAR * sum(misfits[i] for i in chosen):
+            return fit
     begun = [
         fit_model(
             telling, s.model, free_parameters(s.model), iterations=_FIRST_STEPS, units=units,
@@ -86,11 +98,15 @@ def _best_start(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     return again if again.chi2 < fit.chi2 else fit
 
 
-def _telling(rows: Sequence[RecordRows], fit: ModelFit) -> Sequence[RecordRows]:
-    """Return the records with the greatest misfits: starts are tried on these."""
+def _misfits(rows: Sequence[RecordRows], fit: ModelFit) -> list[float]:
+    """Return every record's part of chi-square."""
     ends = np.cumsum([r.target.size for r in rows])[:-1]
-    misfits = [float(np.sum(part**2)) for part in np.split(fit.residual, ends)]
-    return [rows[i] for i in np.sort(np.argsort(misfits)[::-1][:_TRIED])]
+    return [float(np.sum(part**2)) for part in np.split(fit.residual, ends)]
+
+
+def _telling(rows: Sequence[RecordRows], fit: ModelFit) -> list[int]:
+    """Return which records have the greatest misfits: starts are tried on these."""
+    return sorted(int(i) for i in np.argsort(_misfits(rows, fit))[::-1][:_TRIED])
 
 
 def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
