@@ -82,3 +82,21 @@ def test_what_is_a_joint():
     assert not is_joint("sensor-clipping")
     assert has_joint(ForceModel((*DEVICE, FittedTerm("backlash", 1.0, PLAY))))
     assert not has_joint(ForceModel(DEVICE))
+
+
+def test_no_start_is_followed_where_none_is_better_by_far(play):
+    """A device without a joint: play explains nothing of it."""
+
+    def law(t, x, v, a):
+        return 120.0 * a + 800.0 * v + 50.0 * np.sign(x)
+
+    rows = [record_rows(observe(r)) for r in campaign(law).records]
+    plain = ForceModel(DEVICE)
+    without = fit_model(rows, plain, free_parameters(plain))
+    tried = ForceModel((*without.model.terms, FittedTerm("backlash", 1.0, PLAY)))
+    begun = fit_model(rows, tried, ())
+    assert restarted(rows, begun, instead_of=without) is begun
+    plain = fit_model(play, plain, free_parameters(plain))
+    wrong = FittedTerm("backlash", 0.6, {**PLAY, "gap": 2.5e-4, "contact": 250.0})
+    begun = fit_model(play, ForceModel((*plain.model.terms, wrong)), ())
+    assert restarted(play, begun, instead_of=plain).chi2 < 0.5 * plain.chi2
