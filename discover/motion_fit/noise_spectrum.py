@@ -20,6 +20,7 @@ _STEEPEST = 2.0
 _CLEAR = 1.6
 _LEAST_LEFT = 0.2
 _REVERSALS = (0.01, 0.03, 0.1)
+_LEAST = 1e-300
 _LINE = 15.0  # times the level: noise alone is above it once in three million bins
 
 
@@ -36,7 +37,7 @@ class NoiseSpectrum:
 
     def at(self, frequencies: Array) -> Array:
         """Return the density at other frequencies (Hz), N^2/Hz."""
-        known = np.log(self.frequencies), np.log(self.density)
+        known = np.log(self.frequencies), np.log(np.maximum(self.density, _LEAST))
         return np.asarray(np.exp(np.interp(np.log(frequencies), *known)))
 
 
@@ -106,7 +107,8 @@ def _between_harmonics(
         clear = np.arange(2, frequencies.size)
         cycles = frequency / width  # of so many bins a harmonic, the fit has emptied one
         density = density / max(1.0 - 1.0 / cycles, _LEAST_LEFT)
-    clear = clear[frequencies[clear] < (count + 0.5) * frequency]
+    fitted = clear[frequencies[clear] < (count + 0.5) * frequency]
+    clear = fitted if fitted.size else np.arange(1, frequencies.size)
     return Unrepeated(frequencies[clear], density[clear], float(width))
 
 

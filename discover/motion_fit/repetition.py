@@ -18,6 +18,9 @@ from discover.sine_fit import harmonic_design
 from models.checks import Array
 
 FEWEST_CYCLES = 2.5
+_ENOUGH_CYCLES = 6.0
+_FEWEST_SAMPLES, _MOST_SAMPLES = 32, 60_000
+_FEWEST_BINS = 5
 _HALF_WIDTH = 0.75  # of a sample's share of the cycle, to either side
 _LEAST_WEIGHT = 1e-3
 _SLOPED = 1e-3  # of the weights' square, by which their phases have to differ for a slope
@@ -65,10 +68,12 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     Returns
     -------
     Unrepeated or None
-        None with fewer than two and a half cycles.
+        None with fewer than two and a half cycles, or samples too few to compare. Of a long
+        record the first part is used.
     """
-    duration = float(time[-1] - time[0])
-    if duration * frequency < FEWEST_CYCLES:
+    most = max(_MOST_SAMPLES, round(_ENOUGH_CYCLES / (step * frequency)))
+    time, force = time[:most], force[:most]
+    if float(time[-1] - time[0]) * frequency < FEWEST_CYCLES or time.size < _FEWEST_SAMPLES:
         return None
     phase = np.mod((time - time[0]) * frequency, 1.0)
     order = np.argsort(phase, kind="stable")
@@ -79,6 +84,8 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     repeated = same @ steady
     left = steady - repeated
     kept = _smooth_phases(left, own, order, cycles)
+    if np.count_nonzero(kept) < _FEWEST_SAMPLES:
+        return None
     left = _without_changes(same, time, left, repeated, frequency, kept)
     kept = _smooth_phases(left, own, order, cycles)
     at = np.rint((time - time[0]) / step).astype(int)
@@ -97,6 +104,8 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     clear = seen & (apart > _CLEAR)
     if np.count_nonzero(clear) < _ENOUGH_BINS:
         clear = seen
+    if np.count_nonzero(clear) < _FEWEST_BINS:
+        return None
     return Unrepeated(frequencies[clear], density[clear] / gain[clear], float(frequencies[1]))
 
 
@@ -121,7 +130,8 @@ def _without_changes(
     """
     late = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
     slow = np.polynomial.legendre.legvander(late, _SLOW)[:, 1:]
-    lowest = harmonic_design(time, frequency, min(_CHANGING, time.size // _SAMPLES_EACH))
+    harmonics = int(np.clip(time.size // _SAMPLES_EACH, 1, _CHANGING))
+    lowest = harmonic_design(time, frequency, harmonics)
     carriers = np.column_stack([lowest, repeated])
     changes = (slow[:, :, None] * carriers[:, None, :]).reshape(time.size, -1)
     moved = changes - same @ changes

@@ -122,6 +122,21 @@ def test_a_force_that_repeats_exactly_has_no_noise():
     assert noise_spectrum(time, force, 1.0, step, angle).power < 1e-16 * np.mean(force**2)
 
 
+@pytest.mark.parametrize("samples", [4, 5, 7, 12, 20])
+@pytest.mark.parametrize("cycles", [2.5, 3.0, 6.3])
+def test_coarse_records_have_a_noise_too(samples, cycles):
+    time = np.arange(int(samples * cycles)) / samples
+    force = 20.0 * np.cos(2.0 * np.pi * time) + white(np.random.default_rng(1), time.size)
+    found = noise_spectrum(time, force, 1.0, 1.0 / samples, 2.0 * np.pi * time)
+    assert 0.0 < found.power < 30.0
+    assert np.all(np.isfinite(found.at(np.array([0.1, 1.0, 2.0]))))
+
+
+def test_a_long_record_s_first_part_is_enough():
+    time, force, angle, step = measured(white, seed=0, cycles=1000.0)
+    assert noise_spectrum(time, force, 1.0, step, angle).power == pytest.approx(1.0, rel=0.1)
+
+
 def test_inputs_stay_as_they_are():
     time, force, angle, step = measured(white, seed=0)
     for array in (time, force, angle):
