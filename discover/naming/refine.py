@@ -18,6 +18,7 @@ _KINDS = (6, 4, 2, 1)  # of shapes that are fitted, of the first effect, the sec
 _FIRST_STEPS = 2
 _ITERATIONS = 8
 _ENOUGH = 0.02
+_SPRING = 8.0  # times the play, that its flanks give under the greatest force
 _WITHIN = 60.0  # nats behind the best, within which a candidate is refined
 
 
@@ -63,6 +64,7 @@ def refine(
     units = UnitRows()
     frozen = _Frozen.of(rows, fit, units)
     fits: dict[str, ModelFit] = {}
+    passed_over: list[str] = []
     for place, entry in enumerate(leading):
         name = entry.effects[0]
         starts = contest.starts[name][: _KINDS[min(place, len(_KINDS) - 1)]]
@@ -75,8 +77,26 @@ def refine(
             continue
         if TERMS[name].nonnegative and found.model.terms[-1].coefficient <= 0.0:
             continue
+        if is_a_spring(rows, found.model):
+            passed_over.append(name)
+            continue
         fits[name] = found
+    contest = replace(
+        contest,
+        entries=tuple(e for e in contest.entries if not set(passed_over) & set(e.effects)),
+    )
     return reweighed(rows, contest, fit, fits, effects), fits
+
+
+def is_a_spring(rows: Sequence[RecordRows], model: ForceModel) -> bool:
+    """Tell whether the last term is a play so small beside what its flanks give that it is none."""
+    play = model.terms[-1]
+    if play.id != "backlash":
+        return False
+    terms = (*model.terms, *(t for r in rows[:1] for t in r.held))
+    mass = sum(t.coefficient for t in terms if t.id == "inertia")
+    force = max(float(np.abs(r.observation.measured).max()) for r in rows)
+    return force > _SPRING * mass * play.shape["contact"] ** 2 * play.shape["gap"]
 
 
 @dataclass(frozen=True)

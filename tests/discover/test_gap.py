@@ -158,3 +158,19 @@ def test_a_shape_that_no_entry_has_is_unknown_though_one_explains_most_of_it():
     (first, chance), (second, _) = found.last[:2]
     assert (first, second) == ("unknown", "asymmetric-damping")
     assert chance > 0.5
+
+
+def test_a_spring_in_series_is_no_play_in_soft_flanks():
+    """A device behind a rubber mount, by its complex stiffness."""
+
+    def law(t, x, v, a):
+        reach = np.abs(x).max()
+        omega = np.abs(v).max() / reach
+        own = -120.0 * omega**2 + 800.0j * omega
+        mount = 4e5 * (1.0 + 0.5j)
+        phasor = reach * mount * own / (mount + own)
+        return np.imag(phasor * np.exp(1j * omega * t))
+
+    first = close_gap(campaign(law), BASE).rounds[0]
+    assert first.effect == "series-compliance"
+    assert "backlash" not in dict(first.alternatives)

@@ -1,11 +1,14 @@
 """Starts of what moves through a joint. The model's own force: it is the search that is tested."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from discover.motion_fit import observe
 from discover.naming.fit import fit_model, free_parameters
 from discover.naming.forces import has_joint, is_joint
+from discover.naming.refine import is_a_spring
 from discover.naming.restart import polished, restarted
 from discover.naming.rows import record_rows
 from models.constitutive import FittedTerm, ForceModel
@@ -100,3 +103,14 @@ def test_no_start_is_followed_where_none_is_better_by_far(play):
     wrong = FittedTerm("backlash", 0.6, {**PLAY, "gap": 2.5e-4, "contact": 250.0})
     begun = fit_model(play, ForceModel((*plain.model.terms, wrong)), ())
     assert restarted(play, begun, instead_of=plain).chi2 < 0.5 * plain.chi2
+
+
+@pytest.mark.parametrize(("gap", "contact", "spring"), [
+    (2e-6, 230.0, True), (2e-4, 400.0, False), (2e-5, 1800.0, False),
+])
+def test_a_play_far_smaller_than_what_its_flanks_give_is_a_spring(play, gap, contact, spring):
+    joint = FittedTerm("backlash", 1.0, {**PLAY, "gap": gap, "contact": contact})
+    assert is_a_spring(play, ForceModel((*DEVICE, joint))) is spring
+    held = [replace(r, held=DEVICE) for r in play]
+    assert is_a_spring(held, ForceModel((joint,))) is spring
+    assert not is_a_spring(play, ForceModel(DEVICE))
