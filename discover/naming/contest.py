@@ -26,7 +26,7 @@ from models.terms import TERMS
 AGREES = "agrees"
 UNKNOWN = "unknown"
 _NOISE_DEVIATIONS = 4.0  # of chi-square, within which the misfit is the noise's
-_NOISE_UNCERTAINTY = 0.06  # of the noise's variance, over all rows
+_NOISE_UNCERTAINTY = 0.12  # of the noise's variance, over all rows
 _TEMPERATURE = 3.0
 _PRIOR_AGREES = 15.0
 _NO_AGREEMENT = 300.0  # of chi-square above the noise: then it can't be called agreement
@@ -38,6 +38,7 @@ _LEFT = 0.12  # of the misfit, at which a shape is as likely the effect's as ano
 _LEFT_BY_JOINT = 0.3  # likewise: contact and loss are simplified, and impacts hard to meet
 _LEFT_OF_FEW = 0.8  # likewise, where records are few
 _FEW = 4  # records
+_LEFT_BESIDE = 0.5  # likewise, beside shapes that were added before
 _LEFT_SLOPE = 3.0
 _LEFT_MOST = 4.0  # nats
 _PAIR_CANDIDATES = 6
@@ -183,8 +184,8 @@ def run_contest(
             start = (target, chi2)
             pairs += _pairs(lead, best, chosen, spans, freed, start, evidence, informative)
     everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
-    few = len(rows) < _FEW
-    probabilities = _probabilities(everything, effects, chi2 - noise, informative, few=few)
+    usual = _usual_left(rows, tolerated)
+    probabilities = _probabilities(everything, effects, chi2 - noise, informative, usual)
     return Contest(tuple(everything), probabilities, chi2 - noise, size, noise, tolerated, starts)
 
 
@@ -272,8 +273,8 @@ def _pairs(
 
 
 def _probabilities(
-    entries: Sequence[Entry], effects: Sequence[str], excess: float, informative: float, *,
-    few: bool,
+    entries: Sequence[Entry], effects: Sequence[str], excess: float, informative: float,
+    usual: tuple[float, float],
 ) -> dict[str, float]:
     """Return the probability of every name.
 
@@ -295,7 +296,7 @@ def _probabilities(
         named = [e for e in entries if e.effects]
         if named:
             left = [max(e.chi2 - (chi2 - excess), 0.0) / excess for e in named]
-            doubt = min(_doubt(e, share, few=few) for e, share in zip(named, left, strict=True))
+            doubt = min(_doubt(e, share, usual) for e, share in zip(named, left, strict=True))
             scaled[UNKNOWN] = max(scaled[UNKNOWN], scaled[named[0].effects[0]] + doubt)
     total = float(logsumexp(list(scaled.values())))
     result = {k: float(np.exp(v - total)) for k, v in scaled.items()}
@@ -304,16 +305,25 @@ def _probabilities(
     return result
 
 
-def _doubt(entry: Entry, left: float, *, few: bool) -> float:
-    """Return the nats by which what a hypothesis leaves says that none is right.
+def _usual_left(rows: Sequence[RecordRows], tolerated: float) -> tuple[float, float]:
+    """Return the shares of the misfit at which a shape, or a joint, is likely not the effect's.
 
     A shape that is really there leaves a few per cent of the misfit of many tests; one that is
-    not, but the nearest in the catalogue, a fifth and more. With a few, a wrong shape is hardly
-    told from one that is right beside something small.
+    not, but the nearest in the catalogue, a fifth and more. With a few tests a wrong shape is
+    hardly told from one that is right beside something small; nor is it where shapes that were
+    added before may be what is left.
     """
-    usual = _LEFT_BY_JOINT if is_joint(entry.effects[0]) else _LEFT
-    usual = _LEFT_OF_FEW if few else usual
-    return float(min(_LEFT_SLOPE * np.log(max(left, 1e-6) / usual), _LEFT_MOST))
+    if len(rows) < _FEW:
+        return _LEFT_OF_FEW, _LEFT_OF_FEW
+    if tolerated > 0.0:
+        return _LEFT_BESIDE, _LEFT_BESIDE
+    return _LEFT, _LEFT_BY_JOINT
+
+
+def _doubt(entry: Entry, left: float, usual: tuple[float, float]) -> float:
+    """Return the nats by which what a hypothesis leaves says that none is right."""
+    share = usual[1] if is_joint(entry.effects[0]) else usual[0]
+    return float(min(_LEFT_SLOPE * np.log(max(left, 1e-6) / share), _LEFT_MOST))
 
 
 def _over_time(rows: Sequence[RecordRows], before: Array, after: Array, effect: str) -> float:
@@ -359,6 +369,6 @@ def reweighed(
         value -= _over_time(rows, fit.residual, found.residual, e.effects[0])
         entries.append(replace(e, chi2=chi2, log_evidence=value))
     entries.sort(key=lambda e: -e.log_evidence)
-    few = len(rows) < _FEW
-    chances = _probabilities(entries, effects, contest.excess, informative, few=few)
+    usual = _usual_left(rows, contest.tolerated)
+    chances = _probabilities(entries, effects, contest.excess, informative, usual)
     return replace(contest, entries=tuple(entries), probabilities=chances)
