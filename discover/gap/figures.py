@@ -11,7 +11,7 @@ from discover.gap.accuracy import Misfit
 from discover.gap.search import Round
 from discover.gap.stages import without
 from discover.naming.fit import whole_model
-from discover.naming.forces import model_force
+from discover.naming.forces import model_force, needs_cycle
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
@@ -109,7 +109,8 @@ def shape_of(
         step = float((o.time[-1] - o.time[0]) / (o.time.size - 1))
         stop = min(stop, int(np.ceil(1.0 / (o.frequency * step))) + 1)
     chosen = np.unique(np.linspace(0, stop - 1, min(_SHOWN, stop)).astype(int))
-    if abscissa == "velocity" and entry.effect not in _LOOPS:
+    looped = any(needs_cycle(t.term, t.shape) for t in model.terms if t.id == entry.effect)
+    if abscissa == "velocity" and entry.effect not in _LOOPS and not looped:
         chosen = chosen[np.argsort(along[chosen], kind="stable")]
     band = 1.96 * relative_error * np.abs(force[chosen])
     return EffectShape(

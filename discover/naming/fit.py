@@ -18,6 +18,8 @@ from models.constitutive import FittedTerm, ForceModel
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "resampled",
                  "one_way")
+_WHOLE_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
+_APART = 0.1  # of orders: a fractional one from whole ones in the same model
 _STEP = 1e-4  # of a value, for its tangent
 _JOINT_STEP = 1e-3  # likewise behind a joint, whose simulated cycle closes to less
 _ITERATIONS = 40
@@ -206,8 +208,23 @@ def _bounded(model: ForceModel, parameters: Sequence[Parameter], values: Array) 
         low, high = (0.6 * old, 1.6 * old)
         if not known.scaled_by:
             low, high = max(low, known.lower), min(high, known.upper)
+        if parameter.shape == "order":
+            low, high = _apart(model, old, low, high)
         result[index] = float(np.clip(values[index], min(low, high), max(low, high)))
     return result
+
+
+def _apart(model: ForceModel, order: float, low: float, high: float) -> tuple[float, float]:
+    """Return bounds of an order clear of the derivatives that the model has besides.
+
+    Beside inertia a derivative of nearly second order is the difference of two huge forces.
+    """
+    for other in (_WHOLE_ORDERS[t.id] for t in model.terms if t.id in _WHOLE_ORDERS):
+        if order < other:
+            high = min(high, max(other - _APART, order))
+        elif order > other:
+            low = max(low, min(other + _APART, order))
+    return low, high
 
 
 def inverse(gram: Array) -> Array:
@@ -287,10 +304,13 @@ def fit_model(
             slope = slope - stay @ (old - begun) / safe
         before, pull = chi2, drawn(old)
         for _ in range(_TRIES):
-            step = np.linalg.lstsq(
-                gram + damping * np.eye(len(parameters)), slope, rcond=1e-12
-            )[0]
+            step = _step(gram, slope, damping)
             values = _bounded(model, parameters, old + step / safe)
+            stuck = (values == old) & (step != 0.0)
+            if stuck.any() and not stuck.all():  # at a bound: the others step without it
+                step = np.zeros(len(parameters))
+                step[~stuck] = _step(gram[np.ix_(~stuck, ~stuck)], slope[~stuck], damping)
+                values = _bounded(model, parameters, old + step / safe)
             trial = with_values(model, parameters, values)
             if linear:
                 trial = _solved(rows, units, trial, parameters, target)
@@ -311,6 +331,12 @@ def fit_model(
         tangents = _tangents(rows, units, model, parameters, at, linear=False)
     covariance = inverse(tangents @ tangents.T)
     return ModelFit(model, chi2, target - at, tangents, tuple(parameters), covariance)
+
+
+def _step(gram: Array, slope: Array, damping: float) -> Array:
+    """Return the damped Gauss-Newton step of scaled parameters."""
+    damped = gram + damping * np.eye(slope.size)
+    return np.asarray(np.linalg.lstsq(damped, slope, rcond=1e-12)[0])
 
 
 def _solved(

@@ -92,7 +92,7 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
     rounds = document["rounds"]
     if not rounds:
         return None
-    names = ["baseline", *(f"+ {r['effect']}" for r in rounds)]
+    names = ["baseline", *("+ " + r["effect"].replace("-", "-\n") for r in rounds)]
     with house_style():
         figure = new_figure(620, 290)
         axes = figure.add_subplot()

@@ -118,3 +118,35 @@ def test_a_clipped_channel_s_device_is_found_while_it_clips():
     fit = fitted(rows_of(law), begin)
     assert [t.coefficient for t in fit.model.terms] == pytest.approx([120.0, 800.0, 1.0], rel=0.02)
     assert fit.model.terms[-1].shape["limit"] == pytest.approx(250.0, rel=0.01)
+
+
+@pytest.mark.parametrize("start", [1.3, 1.7, 1.9])
+def test_an_order_keeps_off_the_whole_ones_beside_it(start):
+    """Inertance that grows with frequency: a difference of huge forces of nearly second order."""
+
+    def law(t, x, v, a):
+        omega = np.abs(v).max() / np.abs(x).max()
+        return (120.0 + 15.0 * np.log(omega)) * a + 800.0 * v
+
+    begin = model(
+        ("inertia", 100.0), ("viscous-damping", 800.0),
+        ("fractional-derivative", 100.0, {"order": start}),
+    )
+    fit = fitted(rows_of(law), begin)
+    assert 1.1 - 1e-9 <= fit.model.terms[-1].shape["order"] <= 1.9 + 1e-9
+    assert abs(fit.model.terms[0].coefficient) < 1000.0
+    # at the bound the others still reach their least squares
+    held = [p for p in fit.parameters if p.shape is None]
+    linear = fit_model(rows_of(law), fit.model, held)
+    assert fit.chi2 == pytest.approx(linear.chi2, rel=1e-3)
+
+
+def test_an_order_alone_may_be_nearly_two():
+    order = 1.97
+
+    def law(t, x, v, a):
+        omega, reach = np.abs(v).max() / np.abs(x).max(), np.abs(x).max()
+        return 150.0 * omega**order * reach * np.sin(omega * t + 0.5 * np.pi * order)
+
+    fit = fitted(rows_of(law), model(("fractional-derivative", 100.0, {"order": 1.8})))
+    assert fit.model.terms[0].shape["order"] == pytest.approx(order, abs=0.002)
