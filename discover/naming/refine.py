@@ -95,8 +95,9 @@ def is_a_spring(rows: Sequence[RecordRows], model: ForceModel) -> bool:
         return False
     terms = (*model.terms, *(t for r in rows[:1] for t in r.held))
     mass = sum(t.coefficient for t in terms if t.id == "inertia")
+    stiffness = mass * play.shape["contact"] ** 2
     force = max(float(np.abs(r.observation.measured).max()) for r in rows)
-    return force > _SPRING * mass * play.shape["contact"] ** 2 * play.shape["gap"]
+    return stiffness > 0.0 and force > _SPRING * stiffness * play.shape["gap"]
 
 
 @dataclass(frozen=True)
