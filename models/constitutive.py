@@ -23,7 +23,8 @@ from models.motion import Motion
 from models.terms import TERMS, Shape, Term, find_term, own_terms
 from models.terms.own import same_file
 
-_HARMONIC_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
+WHOLE_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
+"""Of the derivative of displacement that a term is."""
 _FIRST_POWER = re.compile(r"\^1(?![\d.])")
 
 
@@ -166,7 +167,7 @@ class ForceModel:
         w = np.asarray(omega, dtype=np.float64)
         total = np.zeros(w.shape, dtype=np.complex128)
         for fitted in self.terms:
-            order = fitted.shape.get("order", _HARMONIC_ORDERS.get(fitted.id))
+            order = fitted.shape.get("order", WHOLE_ORDERS.get(fitted.id))
             if order is not None:
                 factor = harmonic_factors(np.array([order]), np.ravel(w))[0]
                 total += fitted.coefficient * factor.reshape(w.shape)

@@ -16,7 +16,7 @@ from discover.gap.accuracy import pooled
 from discover.gap.stages import Stage, left_out, stage
 from discover.naming.candidates import Part, Variant, scales_of, variants
 from discover.naming.columns import candidate_columns, without_span
-from discover.naming.fit import ModelFit, fit_model, free_parameters
+from discover.naming.fit import ITERATIONS, ModelFit, fit_model, free_parameters
 from discover.naming.forces import DELAY, has_joint, is_joint
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
@@ -31,7 +31,7 @@ _CLOSE = 1.1  # times the noise floor, up to which no curve is corrected
 _WORTH = 0.05  # of the gap of records that were left out, that a correction has to close
 _LEAST = 0.02  # of the misfit, that a member has to explain
 _FEWEST = 20.0  # of chi-square, likewise
-_STEPS, _STEPS_BESIDE_JOINT = 40, 6
+_STEPS_BESIDE_JOINT = 6
 _APART = 1e-4  # of a member's own square, that it has to add to what the model spans
 
 
@@ -121,7 +121,7 @@ def with_member(
     chosen = members[place]
     term = FittedTerm(chosen.id, float(along[place] / power[place]), chosen.shape)
     model = ForceModel((*fit.model.terms, term), fit.model.name)
-    steps = _STEPS_BESIDE_JOINT if has_joint(model) else _STEPS
+    steps = _STEPS_BESIDE_JOINT if has_joint(model) else ITERATIONS
     return chosen.id, fit_model(rows, model, free_parameters(model), iterations=steps)
 
 

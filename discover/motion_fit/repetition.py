@@ -95,9 +95,10 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     share = np.zeros(whole.size)
     share[at] = kept
     taper = np.hanning(whole.size + 2)[1:-1] ** 2
-    gain = _response(same, time, np.flatnonzero(kept), frequencies)
+    width = float(frequencies[1])
+    gain = _response(same, time, np.flatnonzero(kept), width, frequencies.size)
     gain *= float(taper @ share) / float(np.sum(taper))
-    spacing = frequency / frequencies[1]
+    spacing = frequency / width
     apart = np.abs(np.mod(frequencies / frequency + 0.5, 1.0) - 0.5) * spacing
     seen = gain > _LEAST_GAIN * float(np.max(gain))
     seen[:2] = False
@@ -106,7 +107,7 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
         clear = seen
     if np.count_nonzero(clear) < _FEWEST_BINS:
         return None
-    return Unrepeated(frequencies[clear], density[clear] / gain[clear], float(frequencies[1]))
+    return Unrepeated(frequencies[clear], density[clear] / gain[clear], width)
 
 
 def _without_lowest(time: Array, force: Array, frequency: float, step: float) -> Array:
@@ -185,14 +186,20 @@ def _smooth_phases(
 
 
 def _response(
-    same: csr_array, time: Array, kept: NDArray[np.intp], frequencies: Array
+    same: csr_array, time: Array, kept: NDArray[np.intp], width: float, size: int
 ) -> Array:
-    """Return the power that the comparison leaves of a wave, mean over samples, (F,)."""
+    """Return the power that the comparison leaves of a wave, mean over samples, (F,).
+
+    At `size` multiples of `width` (Hz): each wave is a product of a coarse and a fine one.
+    """
     chosen = kept[np.unique(np.linspace(0, kept.size - 1, _PROBED).astype(int))]
-    total = np.zeros(frequencies.size)
+    block = int(np.ceil(np.sqrt(size)))
+    steps = np.arange(block)
+    total = np.zeros(block * block)
     for i in chosen:
         part = slice(same.indptr[i], same.indptr[i + 1])
-        later = time[same.indices[part]] - time[i]
-        wave = np.exp(2j * np.pi * np.outer(later, frequencies))
-        total += np.abs(1.0 - same.data[part] @ wave) ** 2
-    return np.asarray(total / chosen.size)
+        turns = 2j * np.pi * width * (time[same.indices[part]] - time[i])
+        fine = np.exp(np.outer(turns, steps))
+        coarse = same.data[part, None] * np.exp(np.outer(turns, block * steps))
+        total += np.abs(1.0 - (coarse.T @ fine).ravel()) ** 2
+    return np.asarray(total[:size] / chosen.size)

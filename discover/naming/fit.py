@@ -14,15 +14,14 @@ import numpy as np
 from discover.naming.forces import DELAY, Trial, change_on_cycle, is_joint, model_force
 from discover.naming.rows import RecordRows
 from models.checks import Array
-from models.constitutive import FittedTerm, ForceModel
+from models.constitutive import WHOLE_ORDERS, FittedTerm, ForceModel
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "resampled",
                  "one_way")
-_WHOLE_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
 _APART = 0.1  # of orders: a fractional one from whole ones in the same model
 _STEP = 1e-4  # of a value, for its tangent
 _JOINT_STEP = 1e-3  # likewise behind a joint, whose simulated cycle closes to less
-_ITERATIONS = 40
+ITERATIONS = 40
 _TRIES = 6
 _DAMPING = 1e-4
 _LEAST_DAMPING = 1e-10
@@ -219,7 +218,7 @@ def _apart(model: ForceModel, order: float, low: float, high: float) -> tuple[fl
 
     Beside inertia a derivative of nearly second order is the difference of two huge forces.
     """
-    for other in (_WHOLE_ORDERS[t.id] for t in model.terms if t.id in _WHOLE_ORDERS):
+    for other in (WHOLE_ORDERS[t.id] for t in model.terms if t.id in WHOLE_ORDERS):
         if order < other:
             high = min(high, max(other - _APART, order))
         elif order > other:
@@ -240,7 +239,7 @@ def fit_model(
     model: ForceModel,
     parameters: Sequence[Parameter],
     *,
-    iterations: int = _ITERATIONS,
+    iterations: int = ITERATIONS,
     enough: float = _SMALL,
     units: UnitRows | None = None,
     exact: bool = True,

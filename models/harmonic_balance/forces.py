@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from models.checks import Array, InputError
-from models.constitutive import FittedTerm, ForceModel
+from models.constitutive import WHOLE_ORDERS, FittedTerm, ForceModel
 from models.motion import Motion
 from models.structure import Structure
 
-LINEAR_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
 _OF_THE_MOMENT = frozenset(
     {
         "quadratic-damping",
@@ -109,7 +108,7 @@ def _sort(model: object) -> DeviceForces:
         )
     linear, bent, stribeck, friction = [], [], [], 0.0
     for fitted in model.terms:
-        order = fitted.shape.get("order", LINEAR_ORDERS.get(fitted.id))
+        order = fitted.shape.get("order", WHOLE_ORDERS.get(fitted.id))
         smooth = fitted.shape.get("transition_speed", 0.0) > 0.0
         if fitted.id in _MEASURING_CHAIN:
             continue  # it moves nothing

@@ -8,13 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models.checks import Array, InputError, one_of
-from models.constitutive import ForceModel
+from models.constitutive import WHOLE_ORDERS, ForceModel
 from models.structure import Model, Structure
 
 Complex = NDArray[np.complex128]
 Quantity = Literal["displacement", "velocity", "acceleration", "absolute-acceleration"]
-
-_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
 
 
 def linear_terms(model: Model) -> tuple[tuple[float, float], ...]:
@@ -42,7 +40,7 @@ def linear_terms(model: Model) -> tuple[tuple[float, float], ...]:
         )
     found = []
     for fitted in model.terms:
-        order = fitted.shape.get("order", _ORDERS.get(fitted.id))
+        order = fitted.shape.get("order", WHOLE_ORDERS.get(fitted.id))
         if order is not None and fitted.term.acts == "force":
             found.append((fitted.coefficient, order))
     return tuple(found)
