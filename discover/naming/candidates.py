@@ -167,16 +167,16 @@ def _compliance(scales: Scales) -> list[Variant]:
         for loss in (0.03, 0.25)
         for inside in (0.0, 1.0)
     ]
-    aired = [
+    loaded = [
         _one(
             "series-compliance", 2, probe=float(c), loss=0.1, inside=1.0,
-            hardening=h * scales.force, gas=gas, side=side,
+            half_load=h * scales.force, load_share=share, side=side,
         )
         for c in springs[2::2]
-        for h, gas in ((0.1, 0.3), (0.1, 0.7), (0.5, 0.6), (2.0, 0.9))
+        for h, share in ((0.1, 0.3), (0.1, 0.7), (0.5, 0.6), (2.0, 0.9), (0.3, -0.4))
         for side in (0.0, 1.0, -1.0)
     ]
-    return plain + aired
+    return plain + loaded
 
 
 def _stop(scales: Scales) -> list[Variant]:

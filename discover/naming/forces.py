@@ -15,6 +15,7 @@ from models.terms import TERMS, Shape, Term
 from models.terms.time_delay import between_samples
 
 DELAY = "time-delay"
+_BEYOND = 4  # samples beyond a delay, that a spline needs
 
 
 def needs_cycle(term: Term, shape: Shape) -> bool:
@@ -54,8 +55,7 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
         delay = sum(t.coefficient for t in delays)
         degree = int(max(t.shape.get("resampled", 0.0) for t in delays))
         if degree:
-            force = model_force(observation, rest)
-            return between_samples(force, observation.motion.time, delay, degree)
+            return _aligned(observation, rest, delay, degree)
         return model_force(replace(observation, motion=observation.late(delay)), rest)
     motion, cycle = observation.motion, observation.cycle
     if cycle is None or not any(needs_cycle(t.term, t.shape) for t in model.terms):
@@ -65,6 +65,25 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
     steady_plain = ForceModel(tuple(t for t in plain.terms if not _changes(t)))
     change = steady.force(cycle) - steady_plain.force(cycle)
     return plain.force(motion) + _from_cycle(observation, change)
+
+
+def _aligned(
+    observation: Observation, model: ForceModel, delay: float, degree: int
+) -> Array:
+    """Return the force as shifted by a spline through samples, some of them beyond the record."""
+    time, force = observation.motion.time, model_force(observation, model)
+    if observation.late is None:
+        return between_samples(force, time, delay, degree)
+    count = min(int(abs(delay) / np.median(np.diff(time))) + _BEYOND, time.size)
+    span = np.copysign(time[count - 1] - time[0] + np.median(np.diff(time)), delay)
+    other = model_force(replace(observation, motion=observation.late(span)), model)
+    if delay < 0.0:
+        force = np.concatenate([force, other[-count:]])
+        whole = np.concatenate([time, time[-count:] - span])
+        return between_samples(force, whole, delay, degree)[: time.size]
+    force = np.concatenate([other[:count], force])
+    whole = np.concatenate([time[:count] - span, time])
+    return between_samples(force, whole, delay, degree)[count:]
 
 
 def change_on_cycle(observation: Observation, model: ForceModel) -> Array:

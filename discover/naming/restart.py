@@ -18,7 +18,9 @@ _FACTORS = {  # of a joint's shape
 _LOSSES = (0.1, 0.5)
 _LAGS = (0.03, 0.06, 0.12)  # of a valve, over the greatest angular frequency
 _SPRINGS = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # factors of a compliance
-_GASES = ((0.15, 0.3), (0.15, 0.7), (0.5, 0.3), (0.5, 0.7), (2.0, 0.9))  # of force, and share
+_LOADS = (  # half load over the greatest force, and the share of compliance that load takes
+    (0.15, 0.3), (0.15, 0.7), (0.5, 0.3), (0.5, 0.7), (2.0, 0.9), (0.1, -0.2), (0.4, -0.5),
+)
 _SPRING_LOSS = 0.05
 _TRIED = 8  # records
 _FIRST = 3  # that are begun
@@ -116,13 +118,13 @@ def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
             FittedTerm(
                 joint.id, joint.coefficient * factor,
                 {
-                    **joint.shape, "hardening": load * scales.force, "gas": gas, "side": side,
-                    "loss": _SPRING_LOSS,
+                    **joint.shape, "half_load": load * scales.force, "load_share": share,
+                    "side": side, "loss": _SPRING_LOSS,
                 },
             )
             for side in dict.fromkeys((0.0, joint.shape["side"]))
             for factor in _SPRINGS
-            for load, gas in _GASES
+            for load, share in _LOADS
         ]
     if not joint.shape.get("contact", 0.0):
         return []

@@ -47,12 +47,13 @@ class Joint:
     """True where what is lost at a limit is made up at once, as by a valve: the joint slips."""
     lag: float = 0.0
     """s that the valve takes to close, once the flow through it has turned."""
-    hardening: float = 0.0
-    """N of force that squeezes gas in the spring to half its volume; 0 for a linear one."""
-    gas: float = 0.0
-    """Share of the unloaded spring's compliance that is the gas's, by Boyle's law."""
-    hardens: float = 0.0
-    """1 or -1 where it does so only under positive or negative force, 0 where under both."""
+    half_load: float = 0.0
+    """N of force that makes half of the spring's change under load; 0 for a linear one."""
+    load_share: float = 0.0
+    """Share of the unloaded spring's compliance that a great load takes, as it squeezes gas by
+    Boyle's law; below 0 what it adds, as rubber and joints that open do."""
+    load_side: float = 0.0
+    """1 or -1 where it changes only under positive or negative force, 0 where under both."""
     fluid_only: bool = False
     """True where dry friction is beside the joint and not behind it."""
 
@@ -150,9 +151,10 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     carried_along = _ADDED_MASS * float(np.std(rigid)) / float(np.std(motion.acceleration))
     mass = max(mass, carried_along, resistance * motion.step / most)
     fastest = max(float(np.sqrt(joint.stiffness / mass)), resistance / mass)
-    if joint.hardening > 0.0:
-        squeezed = 1.0 + float(np.abs(rigid).max()) / joint.hardening
-        fastest /= np.sqrt(1.0 - joint.gas + joint.gas / squeezed**2)
+    if joint.half_load > 0.0:
+        squeezed = 1.0 + float(np.abs(rigid).max()) / joint.half_load
+        taken = max(joint.load_share, 0.0)
+        fastest /= np.sqrt(1.0 - taken + taken / squeezed**2)
     inner = int(np.clip(np.ceil(fastest * motion.step / _STEP), 1, most))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
     damping = 2.0 * joint.loss * np.sqrt(stiffness * mass)
@@ -160,7 +162,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, stiffness,
         damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.lag,
-        joint.hardening, joint.gas, joint.hardens, passes,
+        joint.half_load, joint.load_share, joint.load_side, passes,
     )
     return np.asarray(force + carried - rigid)
 
@@ -169,7 +171,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, stiffness: float, damping: float, half: float, lower: float,
-    upper: float, refilled: int, lag: float, hardening: float, gas: float, hardens: float,
+    upper: float, refilled: int, lag: float, half_load: float, taken: float, load_side: float,
     passes: int,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps."""
@@ -201,13 +203,13 @@ def _step(
                 deepest = max(deepest, abs(depth))
                 now = speed + 0.5 * h * rate  # half a step on: there the place is known
                 force = 0.0
-                if hardening > 0.0 and (hardens == 0.0 or hardens * depth > 0.0):
-                    # depth = force ((1 - gas) + gas hardening / (hardening + force)) / stiffness
-                    stiff = stiffness / (1.0 - gas)
-                    rest = abs(depth) * stiff - hardening / (1.0 - gas)
-                    force = abs(depth) * stiff * hardening
+                if half_load > 0.0 and (load_side == 0.0 or load_side * depth > 0.0):
+                    # depth = force ((1 - taken) + taken half_load / (half_load + force)) / stiffness
+                    stiff = stiffness / (1.0 - taken)
+                    rest = abs(depth) * stiff - half_load / (1.0 - taken)
+                    force = abs(depth) * stiff * half_load
                     force = 0.5 * (rest + np.sqrt(rest * rest + 4.0 * force))
-                    softer = 1.0 - gas + gas * (hardening / (hardening + force)) ** 2
+                    softer = 1.0 - taken + taken * (half_load / (half_load + force)) ** 2
                     force = force if depth > 0.0 else -force
                     force += damping / np.sqrt(softer) * (pace - now)
                 elif depth > half:

@@ -9,9 +9,10 @@ from models.terms.term import ForceOf, Parameter, Shape, Term
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
     """Return the force through a spring of this compliance, stepped in time.
 
-    With `inside` 1 the spring is that of the fluid, and dry friction is beside it. Gas in it makes
-    a share `gas` of the unloaded compliance; `hardening` (N) squeezes it to half its volume, on
-    one `side` or (0) on both.
+    With `inside` 1 the spring is that of the fluid, and dry friction is beside it. Under load, on
+    one `side` or (0) on both, the spring loses the share `load_share` of its compliance, as gas in
+    it is squeezed, or (below 0) gains it, as rubber and joints that open do: half of it at the
+    force `half_load` (N).
     """
     force = force_of(motion)
     if coefficient <= 0.0:
@@ -19,9 +20,9 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     joint = Joint(
         1.0 / coefficient,
         shape["loss"],
-        hardening=shape["hardening"],
-        gas=shape["gas"],
-        hardens=shape["side"],
+        half_load=shape["half_load"],
+        load_share=shape["load_share"],
+        load_side=shape["side"],
         fluid_only=shape["inside"] > 0.0,
     )
     return through_joint(force, motion, joint, device_of(force, motion))
@@ -36,8 +37,8 @@ TERM = Term(
     parameters=(
         Parameter("loss", 0.0, 1.0, 0.05, ""),
         Parameter("inside", 0.0, 1.0, 0.0, ""),
-        Parameter("hardening", 0.0, 1e9, 0.0, "N"),
-        Parameter("gas", 0.0, 0.95, 0.0, ""),
+        Parameter("half_load", 0.0, 1e9, 0.0, "N"),
+        Parameter("load_share", -3.0, 0.95, 0.0, ""),
         Parameter("side", -1.0, 1.0, 0.0, ""),
     ),
     nonnegative=True,

@@ -141,7 +141,7 @@ def test_gas_in_a_spring_is_soft_unloaded_and_gone_when_squeezed(load, left):
     """Far below the force that halves the gas the spring is linear, far above only its rest is."""
     compliance = 1e-5
     top = float(np.abs(force(*LINEAR)).max())
-    shape = {"loss": 0.02, "hardening": top / load, "gas": 0.7}
+    shape = {"loss": 0.02, "half_load": top / load, "load_share": 0.7}
     found = force(*LINEAR, FittedTerm("series-compliance", compliance, shape))
     device = -200.0 * OMEGA**2 + 1j * OMEGA * 900.0
     spring = 1.0 / (left * compliance)
@@ -151,7 +151,7 @@ def test_gas_in_a_spring_is_soft_unloaded_and_gone_when_squeezed(load, left):
 
 
 def test_gas_on_one_side_softens_that_side_only():
-    shape = {"loss": 0.02, "hardening": 300.0, "gas": 0.7, "side": 1.0}
+    shape = {"loss": 0.02, "half_load": 300.0, "load_share": 0.7, "side": 1.0}
     found = force(*LINEAR, FittedTerm("series-compliance", 1e-5, shape))
     mirrored = force(*LINEAR, FittedTerm("series-compliance", 1e-5, {**shape, "side": -1.0}))
     half = found.size // 2
