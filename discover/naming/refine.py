@@ -19,7 +19,7 @@ _FIRST_STEPS = 2
 _ITERATIONS = 8
 _ENOUGH = 0.02
 _SPRING = 8.0  # times the play, that its flanks give under the greatest force
-_WITHIN = 60.0  # nats behind the best, within which a candidate is refined
+_WITHIN = 60.0  # nats behind the best that adds one effect, within which another is refined
 
 
 def extended(model: ForceModel, entry: Entry, *, only_first: bool = True) -> ForceModel:
@@ -59,8 +59,9 @@ def refine(
     singles = [e for e in contest.entries if len(e.effects) == 1]
     if not singles:
         return contest, {}
-    best = max(e.log_evidence for e in contest.entries)
-    leading = [e for e in singles[:_LEADING] if e.log_evidence > best - _WITHIN]
+    leading = [
+        e for e in singles[:_LEADING] if e.log_evidence > singles[0].log_evidence - _WITHIN
+    ]
     units = UnitRows()
     frozen = _Frozen.of(rows, fit, units)
     fits: dict[str, ModelFit] = {}

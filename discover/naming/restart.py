@@ -114,17 +114,19 @@ def _telling(rows: Sequence[RecordRows], fit: ModelFit) -> list[int]:
 def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
     """Return joints around one, in a campaign of these scales; none for other effects."""
     if joint.id == "series-compliance":
+        sides = [s for s in (0.0, 1.0, -1.0) if s != joint.shape["side"]]
+        turned = [{"side": s} for s in sides if joint.shape["half_load"] > 0.0]
+        loaded = [
+            {
+                "half_load": load * scales.force, "load_share": share, "side": side,
+                "loss": _SPRING_LOSS,
+            }
+            for side in dict.fromkeys((0.0, joint.shape["side"])) for load, share in _LOADS
+        ]
+        factors = [(1.0, s) for s in turned] + [(f, s) for f in _SPRINGS for s in loaded]
         return [
-            FittedTerm(
-                joint.id, joint.coefficient * factor,
-                {
-                    **joint.shape, "half_load": load * scales.force, "load_share": share,
-                    "side": side, "loss": _SPRING_LOSS,
-                },
-            )
-            for side in dict.fromkeys((0.0, joint.shape["side"]))
-            for factor in _SPRINGS
-            for load, share in _LOADS
+            FittedTerm(joint.id, joint.coefficient * factor, {**joint.shape, **shape})
+            for factor, shape in factors
         ]
     if not joint.shape.get("contact", 0.0):
         return []
