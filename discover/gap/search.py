@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
 from discover.naming.contest import AGREES, UNKNOWN, Contest, reweighed, run_contest
-from discover.naming.fit import ModelFit, fit_model, free_parameters
+from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import has_joint, is_joint
 from discover.naming.refine import extended, refine
 from discover.naming.restart import polished, restarted
 from discover.naming.rows import RecordRows
+from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
 MOST_ROUNDS = 6
@@ -99,7 +102,7 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     first = refitted if moved else replace(start, fit=fit)
     rounds: list[Round] = []
     tried: set[str] = set()
-    doubt, members, curves = 0.0, 0, True
+    doubt, members, curves = np.zeros(len(fitted)), 0, True
     while True:
         now = rounds[-1].after if rounds else first
         present = {t.id for t in now.fit.model.terms}
@@ -108,7 +111,8 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         found = _next(rows, fitted, now, left)
         if found.added is not None:
             curves = True
-            doubt += _doubt(found.added.effect) ** 2 * found.gained
+            gained = misfits(fitted, now.fit) - misfits(fitted, found.added.stage.fit)
+            doubt = doubt + _doubt(found.added.effect) ** 2 * np.maximum(gained, 0.0)
             tried |= set(found.added.dropped)
             rounds.append(found.added)
             continue
@@ -131,7 +135,8 @@ class _Open:
     """What a round may still do."""
 
     effects: Sequence[str]
-    doubt: float
+    doubt: Array
+    """Of each record's chi-square what the shapes of what was added may be wrong by."""
     rounds: Sequence[Round]
     more: bool
     curves: bool
@@ -144,7 +149,6 @@ class _Next:
 
     contest: Contest
     added: Round | None = None
-    gained: float = 0.0
     rejected: str | None = None
     waits: bool = False
     """An effect was named that the curves of what was added may explain better."""
@@ -172,7 +176,7 @@ def _next(
     after = stage(rows, mended)
     if not _helps(rows, now, after, _NOTICED if left.rounds else 0.0):
         return _Next(_refused(rows, now, contest, name, left.rounds), rejected=name)
-    return _Next(contest, Round(name, contest, now, after, dropped), gained)
+    return _Next(contest, Round(name, contest, now, after, dropped))
 
 
 def _within_doubt(rows: Sequence[RecordRows], rounds: Sequence[Round]) -> bool:
@@ -236,7 +240,7 @@ def _refused(
 
 
 def _contest(
-    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str], tolerated: float
+    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str], doubt: Array
 ) -> tuple[Contest, dict[str, ModelFit]]:
     reversal = next(
         (
@@ -246,6 +250,8 @@ def _contest(
         ),
         0.0,
     )
+    beyond = misfits(rows, fit) - np.array([r.target.size for r in rows])
+    tolerated = float(np.sum(np.minimum(doubt, np.maximum(beyond, 0.0))))
     contest = run_contest(rows, fit, effects, reversal=reversal, tolerated=tolerated)
     contest, fits = refine(rows, fit, contest, effects)
     simulated = all(r.cycle_rows is not None for r in rows)  # a long record takes minutes

@@ -226,6 +226,12 @@ def _apart(model: ForceModel, order: float, low: float, high: float) -> tuple[fl
     return low, high
 
 
+def misfits(rows: Sequence[RecordRows], fit: ModelFit) -> Array:
+    """Return every record's part (N,) of a fit's chi-square."""
+    ends = np.cumsum([r.target.size for r in rows])[:-1]
+    return np.array([float(np.sum(part**2)) for part in np.split(fit.residual, ends)])
+
+
 def inverse(gram: Array) -> Array:
     """Return the pseudo-inverse of a Gram matrix whose columns differ widely in size."""
     scale = np.sqrt(np.maximum(np.diagonal(gram), 0.0))

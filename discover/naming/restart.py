@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 
 from discover.naming.candidates import Scales, scales_of
-from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters
+from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters, misfits
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 
@@ -82,8 +82,7 @@ def _best_start(
         starts.append(fit_model(telling, model, (), units=units))
     starts.sort(key=lambda f: f.chi2)
     if instead_of is not None and starts:
-        misfits = _misfits(rows, instead_of)
-        if starts[0].chi2 > _BY_FAR * sum(misfits[i] for i in chosen):
+        if starts[0].chi2 > _BY_FAR * float(np.sum(misfits(rows, instead_of)[chosen])):
             return fit
     begun = [
         fit_model(
@@ -100,15 +99,9 @@ def _best_start(
     return again if again.chi2 < fit.chi2 else fit
 
 
-def _misfits(rows: Sequence[RecordRows], fit: ModelFit) -> list[float]:
-    """Return every record's part of chi-square."""
-    ends = np.cumsum([r.target.size for r in rows])[:-1]
-    return [float(np.sum(part**2)) for part in np.split(fit.residual, ends)]
-
-
 def _telling(rows: Sequence[RecordRows], fit: ModelFit) -> list[int]:
     """Return which records have the greatest misfits: starts are tried on these."""
-    return sorted(int(i) for i in np.argsort(_misfits(rows, fit))[::-1][:_TRIED])
+    return sorted(int(i) for i in np.argsort(misfits(rows, fit))[::-1][:_TRIED])
 
 
 def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
