@@ -137,8 +137,10 @@ def _family(rows: Sequence[RecordRows], model: ForceModel, effect: str) -> list[
             for power in _POWERS[effect] for side in sides
         ]
     else:
-        scales = scales_of([r.observation for r in rows])
-        parts = [p for v in variants(effect, scales) for p in v.parts]
+        parts = []
+    scales = scales_of([r.observation for r in rows])
+    if effect not in _POWERS or own[0].get("width", 0.0) > 0.0:
+        parts += [p for v in variants(effect, scales) for p in v.parts]
     unique: dict[tuple[tuple[str, float], ...], Part] = {}
     for p in parts:
         shape = TERMS[effect].shape(p.shape)

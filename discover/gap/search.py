@@ -11,6 +11,7 @@ from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
+from discover.naming.ahead import pairs_ahead
 from discover.naming.contest import AGREES, UNKNOWN, Contest, reweighed, run_contest
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import has_joint, is_joint
@@ -264,6 +265,11 @@ def _contest(
             model = extended(fit.model, contest.starts[name][0])
             begun = fit_model(rows, model, (), exact=False)
         fits[name] = restarted(rows, begun, instead_of=fit)
+    contest = reweighed(rows, contest, fit, fits, effects)
+    if contest.ranked[0][0] != UNKNOWN:
+        return contest, fits
+    pairs = pairs_ahead(rows, contest, fits, effects)
+    contest = replace(contest, entries=(*contest.entries, *pairs))
     return reweighed(rows, contest, fit, fits, effects), fits
 
 

@@ -225,7 +225,16 @@ def _along(scales: Scales) -> list[Variant]:
     name, speed = "position-dependent-friction", scales.reversal
     one, two, four = (Part(name, {"power": p, "transition_speed": speed}) for p in (1.0, 2.0, 4.0))
     sets = ((one,), (two,), (one, two), (two, four), (one, two, four))
-    return [Variant(name, parts, 0) for parts in sets]
+    local = [
+        _one(
+            name, 2, power=0.0, form=form, place=place * scales.displacement,
+            width=width * scales.displacement, transition_speed=speed,
+        )
+        for form in (0.0, 2.0)
+        for place in (-0.5, 0.05, 0.5)
+        for width in (0.15, 0.4)
+    ]
+    return [*(Variant(name, parts, 0) for parts in sets), *local]
 
 
 def _thermal(scales: Scales) -> list[Variant]:
@@ -244,10 +253,12 @@ def _thermal(scales: Scales) -> list[Variant]:
 
 
 def _drift(scales: Scales) -> list[Variant]:
-    return [
+    settling = [
         _one("sensor-drift", 1, settling_time=float(t))
         for t in (0.0, *np.geomspace(0.02, 1.0, 5) * scales.duration)
     ]
+    powers = [Part("sensor-drift", {"settling_time": 0.0, "power": p}) for p in (1.0, 2.0, 3.0)]
+    return [*settling, *(Variant("sensor-drift", tuple(powers[:n]), 0) for n in (2, 3))]
 
 
 def _gain(scales: Scales) -> list[Variant]:

@@ -342,6 +342,17 @@ def _over_time(rows: Sequence[RecordRows], before: Array, after: Array, effect: 
     return unseen + float(np.clip(-0.5 * gain, 0.0, _REFUTED))
 
 
+def pair_evidence(
+    rows: Sequence[RecordRows], contest: Contest, chi2: float, chosen: Sequence[Variant]
+) -> float:
+    """Return the log evidence of two effects that were fitted together, with their chi-square."""
+    informative = sum(r.informative for r in rows)
+    spent = sum(len(v.parts) + v.shapes for v in chosen)
+    value = -0.5 * cost(chi2 - contest.noise, informative, contest.tolerated)
+    value -= 0.5 * spent * float(np.log(contest.rows))
+    return value + _PRIOR_PAIR - _PAIR_DOUBT * informative
+
+
 def reweighed(
     rows: Sequence[RecordRows],
     contest: Contest,

@@ -75,11 +75,12 @@ def _aligned(
     if observation.late is None:
         return between_samples(force, time, delay, degree)
     count = min(int(abs(delay) / np.median(np.diff(time))) + _BEYOND, time.size)
-    span = np.copysign(time[count - 1] - time[0] + np.median(np.diff(time)), delay)
-    other = model_force(replace(observation, motion=observation.late(span)), model)
+    span = float(time[count - 1] - time[0] + np.median(np.diff(time)))
+    early = -span if delay < 0.0 else span
+    other = model_force(replace(observation, motion=observation.late(early)), model)
     if delay < 0.0:
         force = np.concatenate([force, other[-count:]])
-        whole = np.concatenate([time, time[-count:] - span])
+        whole = np.concatenate([time, time[-count:] + span])
         return between_samples(force, whole, delay, degree)[: time.size]
     force = np.concatenate([other[:count], force])
     whole = np.concatenate([time[:count] - span, time])

@@ -14,7 +14,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     The flanks' contact has the natural frequency `contact` (rad/s) with the device's mass.
     """
     force = force_of(motion)
-    device = device_of(force, motion)
+    device = device_of(force, motion, force_of)
     stiffness = float(device[0]) * shape["contact"] ** 2
     if stiffness <= 0.0:
         return force

@@ -1,10 +1,10 @@
 """A joint in series with a device: a spring, play, or a limit of what it carries.
 
-The device behind it is the mass and the resistance that fit its own force best on the motion; it
-is driven through the joint and stepped in time to its steady state.
+The device behind it is a spring, and the mass and the resistance that fit the rest of its own force
+best on the motion; it is driven through the joint and stepped in time to its steady state.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from weakref import ReferenceType, ref
 
 import numpy as np
@@ -13,6 +13,7 @@ from scipy.optimize import nnls
 
 from models.checks import Array
 from models.motion import Motion
+from models.terms.term import ForceOf
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
@@ -67,19 +68,39 @@ class _Last:
     known: tuple[ReferenceType[Array], ReferenceType[Motion], Array] | None = None
 
 
-def device_of(force: Array, motion: Motion) -> Array:
+def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> Array:
     """Return the device that fits a force best: its mass and resistances, and where they reverse.
 
-    Mass (kg), viscous (N s/m), quadratic (N s^2/m^2) and dry (N) resistance, and the range of
-    speed (m/s) over which the dry one reverses. None is negative; all are zero for a force that is
-    not finite.
+    Mass (kg), viscous (N s/m), quadratic (N s^2/m^2) and dry (N) resistance, the range of speed
+    (m/s) over which the dry one reverses, and the stiffness (N/m) of a spring beside them. None
+    but the stiffness is negative; all are zero for a force that is not finite.
+
+    Parameters
+    ----------
+    force : ndarray, shape (N,)
+        The device's force, N.
+    motion : Motion
+        That it belongs to.
+    force_of : callable, optional
+        The device: what is lost without displacement is its spring's. At one frequency nothing
+        else tells a spring from a mass.
     """
     last = _Last.known
     if last is not None and last[0]() is force and last[1]() is motion:
         return last[2]
-    found = _device(force, motion)
+    stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of)
+    place = motion.displacement - motion.displacement.mean()
+    found = np.append(_device(force - stiffness * place, motion), stiffness)
     _Last.known = ref(force), ref(motion), found
     return found
+
+
+def _stiffness(force: Array, motion: Motion, force_of: ForceOf) -> float:
+    x = motion.displacement
+    at_rest = force_of(replace(motion, displacement=np.zeros_like(x)))
+    place = x - x.mean()
+    slope = float((force - at_rest) @ place) / max(float(place @ place), 1e-300)
+    return slope if np.isfinite(slope) else 0.0
 
 
 def _device(force: Array, motion: Motion) -> Array:
@@ -136,21 +157,22 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
         Of the driven end.
     joint : Joint
         What it is driven through.
-    device : ndarray, shape (5,)
+    device : ndarray, shape (6,)
         What `device_of` makes of the force.
     """
-    mass, viscous, quadratic, dry, reversal = device
+    mass, viscous, quadratic, dry, reversal, spring = device
     if mass <= 0.0:
         return force
-    v, x = motion.velocity, motion.displacement
+    v, x = motion.velocity, motion.displacement - motion.displacement.mean()
     behind = 0.0 if joint.fluid_only else dry
     rigid = mass * motion.acceleration + viscous * v + quadratic * v * np.abs(v)
-    rigid = rigid + behind * np.tanh(v / reversal)
+    rigid = rigid + behind * np.tanh(v / reversal) + spring * x
     most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
     resistance = viscous + quadratic * float(np.abs(v).max())
     carried_along = _ADDED_MASS * float(np.std(rigid)) / float(np.std(motion.acceleration))
     mass = max(mass, carried_along, resistance * motion.step / most)
-    fastest = max(float(np.sqrt(joint.stiffness / mass)), resistance / mass)
+    natural = float(np.sqrt((joint.stiffness + max(spring, 0.0)) / mass))
+    fastest = max(natural, resistance / mass)
     if joint.half_load > 0.0:
         squeezed = 1.0 + float(np.abs(rigid).max()) / joint.half_load
         taken = max(joint.load_share, 0.0)
@@ -160,7 +182,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     damping = 2.0 * joint.loss * np.sqrt(stiffness * mass)
     passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
     carried = _step(
-        x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, stiffness,
+        x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, spring, stiffness,
         damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.lag,
         joint.half_load, joint.load_share, joint.load_side, passes,
     )
@@ -170,9 +192,9 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
 @njit(cache=True, fastmath=True, error_model="numpy")  # type: ignore[untyped-decorator]
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
-    dry: float, slow: float, stiffness: float, damping: float, half: float, lower: float,
-    upper: float, refilled: int, lag: float, half_load: float, taken: float, load_side: float,
-    passes: int,
+    dry: float, slow: float, spring: float, stiffness: float, damping: float, half: float,
+    lower: float, upper: float, refilled: int, lag: float, half_load: float, taken: float,
+    load_side: float, passes: int,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps."""
     size = x.size
@@ -232,7 +254,8 @@ def _step(
                 force = min(max(force, lower), upper)
                 total += force
                 start = speed
-                speed += h * (force - (viscous + quadratic * abs(now)) * now) / mass
+                resisted = (viscous + quadratic * abs(now)) * now + spring * position
+                speed += h * (force - resisted) / mass
                 free = speed  # friction implicitly: it never overshoots
                 if abs(free) > _WIDE * slow + brake:
                     speed -= brake if free > 0.0 else -brake

@@ -8,20 +8,32 @@ from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return sign v times x to a whole `power`, reversing as friction does."""
+    """Return sign v times x to a whole `power`, reversing as friction does.
+
+    With a `width` (m) it is only near a `place` (m), by a Gaussian bump, or (`form` 2) beyond it,
+    by a smooth step.
+    """
     speed = shape["transition_speed"]
     v, x = motion.velocity, motion.displacement
     direction = np.sign(v) if speed == 0.0 else np.tanh(v / speed)
-    return np.asarray(direction * x ** int(shape["power"]))
+    along = direction * x ** int(shape["power"])
+    if shape["width"] == 0.0:
+        return np.asarray(along)
+    beyond = (x - shape["place"]) / shape["width"]
+    local = 0.5 + 0.5 * np.tanh(beyond) if shape["form"] == 2.0 else np.exp(-(beyond**2))
+    return np.asarray(along * local)
 
 
 TERM = Term(
     "position-dependent-friction",
     "N/m^{power}",
-    "f times x (or its square) times sign v",
+    "f times sign v times x, its square, or what is near a place",
     column,
     parameters=(
-        Parameter("power", 1.0, 4.0, 1.0, ""),
+        Parameter("power", 0.0, 4.0, 1.0, ""),
+        Parameter("form", 0.0, 2.0, 0.0, ""),
+        Parameter("place", -1.0, 1.0, 0.0, "m", "displacement"),
+        Parameter("width", 0.05, 1.0, 0.0, "m", "displacement", "log"),
         Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
     ),
     mistaken_for=("hysteresis", "coulomb-friction"),

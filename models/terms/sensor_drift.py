@@ -8,18 +8,26 @@ from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return 1 - exp(-t/T); `settling_time` 0 stands for a straight drift, t in s."""
+    """Return 1 - exp(-t/T), or t to a whole `power` where `settling_time` is 0, t in s.
+
+    Several powers together make a zero that wanders.
+    """
     elapsed = motion.time - motion.time[0]
     constant = shape["settling_time"]
-    return np.asarray(elapsed if constant == 0.0 else -np.expm1(-elapsed / constant))
+    if constant == 0.0:
+        return np.asarray(elapsed ** int(shape["power"]))
+    return np.asarray(-np.expm1(-elapsed / constant))
 
 
 TERM = Term(
     "sensor-drift",
     "N",
-    "f times 1 - exp(-t/T), t from the record's start (N/s where straight)",
+    "f times 1 - exp(-t/T), t from the record's start, or its powers (N/s, N/s^2, ...)",
     column,
-    parameters=(Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),),
+    parameters=(
+        Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),
+        Parameter("power", 1.0, 3.0, 1.0, ""),
+    ),
     mistaken_for=("force-offset",),
     follows="time",
 )

@@ -25,7 +25,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         load_side=shape["side"],
         fluid_only=shape["inside"] > 0.0,
     )
-    return through_joint(force, motion, joint, device_of(force, motion))
+    return through_joint(force, motion, joint, device_of(force, motion, force_of))
 
 
 TERM = Term(

@@ -61,7 +61,7 @@ def test_the_device_that_fits_a_force_is_the_one_that_made_it(reversal):
     v = given.velocity
     pace = reversal * np.abs(v).max()
     force = MASS * given.acceleration + 3e4 * v * np.abs(v) + 80.0 * np.tanh(v / pace) + 5.0
-    mass, viscous, quadratic, dry, found = device_of(force, given)
+    mass, viscous, quadratic, dry, found, _ = device_of(force, given)
     resistance = viscous * v + quadratic * v * np.abs(v) + dry * np.tanh(v / found)
     made = force - MASS * given.acceleration - 5.0
     assert mass == pytest.approx(MASS, rel=2e-3)
