@@ -16,7 +16,7 @@ from discover.naming.contest import AGREES, UNKNOWN, Contest, reweighed, run_con
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import has_joint, is_joint
 from discover.naming.refine import extended, refine
-from discover.naming.restart import polished, restarted
+from discover.naming.restart import best_range, polished, restarted
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
@@ -286,6 +286,8 @@ def _mended(
     mended = fit_model(rows, model, free_parameters(model))
     if name == "time-delay":
         return _aligned(rows, mended)
+    if name == "sensor-gain":
+        return best_range(rows, mended)
     if is_joint(name):
         mended = restarted(rows, mended)
     return polished(rows, mended) if has_joint(mended.model) else mended

@@ -266,7 +266,10 @@ def _gain(scales: Scales) -> list[Variant]:
     between = np.sqrt(peaks[1:] * peaks[:-1])[peaks[1:] > 1.05 * peaks[:-1]]
     chosen = between[:: max(between.size // 16, 1)]
     uniform = [_one("sensor-gain", 0, 1e-3, threshold=0.0, side=1.0)]
-    ranges = [_one("sensor-gain", 1, 1e-3, threshold=float(t), side=1.0) for t in chosen]
+    ranges = [
+        _one("sensor-gain", 1, probe, threshold=float(t / np.sqrt(1.0 + probe)), side=1.0)
+        for t in chosen for probe in (0.1, -0.1)  # as measured, peaks in the range have the gain
+    ]
     one_way = [_one("sensor-gain", 1, 1e-3, side=1.0, one_way=1.0)]
     return uniform + ranges + one_way
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from discover.naming.contest import Contest, Entry, reweighed
 from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters
+from discover.naming.restart import best_range
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
@@ -78,6 +79,8 @@ def refine(
             continue
         if TERMS[name].nonnegative and found.model.terms[-1].coefficient <= 0.0:
             continue
+        if name == "sensor-gain":
+            found = best_range(rows, found)
         if is_a_spring(rows, found.model):
             passed_over.append(name)
             continue

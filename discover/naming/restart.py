@@ -8,7 +8,15 @@ from itertools import product
 import numpy as np
 
 from discover.naming.candidates import Scales, scales_of
-from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters, misfits
+from discover.naming.fit import (
+    ModelFit,
+    UnitRows,
+    fit_model,
+    free_parameters,
+    misfits,
+    whole_model,
+)
+from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 
@@ -30,6 +38,8 @@ _ENOUGH = 0.003
 _TURNS = 3  # of starts around the best so far,
 _MUCH = 0.5  # as long as chi-square falls to this share
 _POLISH = 6
+_RANGE_STEPS = 8
+_SETTLED = 0.9  # of chi-square, to which another turn has to bring it
 _BY_FAR = 0.7  # of the misfit without the joint
 _GOOD = 1.5  # of chi-square a row, up to which no other start is sought
 
@@ -66,6 +76,35 @@ def restarted(
         before, fit = fit.chi2, _best_start(rows, fit, instead_of)
         if fit.chi2 > _MUCH * before:
             break
+    return fit
+
+
+def best_range(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+    """Return the fit with the amplifier's range that explains most; the last term is its gain.
+
+    Which records' peaks are in the range is a choice, that steps of a fit can't make.
+    """
+    for _ in range(_TURNS):
+        before, fit = fit.chi2, _best_range(rows, fit)
+        if fit.chi2 > _SETTLED * before:
+            break
+    return fit
+
+
+def _best_range(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+    *rest, gain = fit.model.terms
+    if gain.shape["threshold"] == 0.0:
+        return fit
+    model = ForceModel(tuple(rest), fit.model.name)
+    peaks = np.sort([
+        np.abs(model_force(r.observation, whole_model(r, model))).max() for r in rows
+    ])
+    for threshold in np.sqrt(peaks[1:] * peaks[:-1]):
+        term = FittedTerm(gain.id, gain.coefficient, {**gain.shape, "threshold": threshold})
+        other = ForceModel((*rest, term), fit.model.name)
+        trial = fit_model(rows, other, free_parameters(other), iterations=_RANGE_STEPS)
+        if trial.chi2 < fit.chi2:
+            fit = trial
     return fit
 
 

@@ -10,14 +10,13 @@ from models.terms.term import ForceOf, Parameter, Shape, Term
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
     """Return the force times 1 + g, where the record's peak lies in the amplifier's range.
 
-    The range reaches from `threshold` (N) upwards, or up to it where `side` is negative: half-way
-    (geometric mean) between the force and what the range makes of it. With `one_way` 1 the gain
-    is that of tension (`side` 1) or compression (-1) only.
+    The range reaches from a peak force of `threshold` (N) upwards, or up to it where `side` is
+    negative. With `one_way` 1 the gain is that of tension (`side` 1) or compression (-1) only.
     """
     force = force_of(motion)
     if shape["one_way"] > 0.0:
         return np.where(shape["side"] * force > 0.0, 1.0 + coefficient, 1.0) * force
-    peak = float(np.abs(force).max() * np.sqrt(max(1.0 + coefficient, 0.0)))
+    peak = float(np.abs(force).max())
     inside = peak >= shape["threshold"] if shape["side"] >= 0.0 else peak < shape["threshold"]
     return force * (1.0 + coefficient) if inside else force
 
