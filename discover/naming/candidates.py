@@ -138,7 +138,7 @@ def _stribeck(scales: Scales) -> list[Variant]:
         )
         for s in np.geomspace(0.01, 0.5, 5) * scales.speed
         for z in np.geomspace(3e-4, 0.05, 5) * scales.displacement
-        for form in (0, 2)
+        for form in (0, 1, 2)
     ]
     return bristles + [
         _one(

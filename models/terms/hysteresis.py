@@ -9,6 +9,7 @@ from models.terms.term import Parameter, Shape, Term
 
 JENKINS, DAHL, IWAN = 0.0, 1.0, 2.0
 _SLIDERS = 8
+_LEAST_HELD = 1e-9
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
@@ -26,25 +27,29 @@ def _stop(x: Array, limit: float, *, passes: int) -> Array:
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _dahl(x: Array, limit: float, *, passes: int) -> Array:
-    """Return Dahl's state: dz = (1 - z sign dx) dx / limit, exact for each step."""
+def _dahl(x: Array, limit: float, holds: Array, *, passes: int) -> Array:
+    """Return Dahl's state: dz = (1 - z sign dx / hold) dx / limit, exact for each step."""
     result = np.empty(x.size)
     state = 0.0
     last = x[0]
     for _ in range(passes):
         for i in range(x.size):
             step = x[i] - last
-            goal = 1.0 if step > 0.0 else -1.0
-            state = goal + (state - goal) * np.exp(-abs(step) / limit)
+            goal = holds[i] if step > 0.0 else -holds[i]
+            state = goal + (state - goal) * np.exp(-abs(step) / (limit * holds[i]))
             last = x[i]
             result[i] = state
     return result
 
 
-def bristle_state(motion: Motion, length: float) -> Array:
-    """Return Dahl's state, in [-1, 1]: the sign of v that follows over a presliding length, m."""
+def bristle_state(motion: Motion, length: float, holds: Array | None = None) -> Array:
+    """Return Dahl's state, in [-1, 1]: the sign of v that follows over a presliding length, m.
+
+    What the bristles hold may fall with speed to the shares `holds` (N,), above 0 (LuGre).
+    """
     x = np.ascontiguousarray(motion.displacement)
-    return np.asarray(_dahl(x, length, passes=2 if motion.periodic else 1))
+    shares = np.ones_like(x) if holds is None else np.maximum(holds, _LEAST_HELD)
+    return np.asarray(_dahl(x, length, shares, passes=2 if motion.periodic else 1))
 
 
 def column(motion: Motion, shape: Shape) -> Array:
@@ -57,7 +62,7 @@ def column(motion: Motion, shape: Shape) -> Array:
     x, limit = np.ascontiguousarray(motion.displacement), shape["yield_displacement"]
     passes = 2 if motion.periodic else 1
     if shape["form"] == DAHL:
-        return np.asarray(_dahl(x, limit, passes=passes))
+        return np.asarray(_dahl(x, limit, np.ones_like(x), passes=passes))
     if shape["form"] == IWAN:
         limits = 2.0 * limit * (np.arange(_SLIDERS) + 0.5) / _SLIDERS
         parts = [_stop(x, each, passes=passes) * each for each in limits]

@@ -13,13 +13,13 @@ def column(motion: Motion, shape: Shape) -> Array:
 
     `form` 1 is exp(-|v|/v_s) sign v, 2 the rational fall sign v / (1 + (v/v_s)^2). With a
     transition speed, tanh stands for the sign; with a `presliding` length (m) the state of
-    bristles that deflect before they slip.
+    bristles that deflect before they slip, and hold less the faster they do (LuGre).
     """
     v, speed = motion.velocity, shape["transition_speed"]
     ratio = np.abs(v) / shape["stribeck_velocity"]
     falls = (np.exp(-(ratio**2)), np.exp(-ratio), 1.0 / (1.0 + ratio**2))
     if shape["presliding"] > 0.0:
-        return np.asarray(falls[int(shape["form"])] * bristle_state(motion, shape["presliding"]))
+        return bristle_state(motion, shape["presliding"], falls[int(shape["form"])])
     direction = np.sign(v) if speed == 0.0 else np.tanh(v / speed)
     return np.asarray(falls[int(shape["form"])] * direction)
 
