@@ -104,14 +104,15 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     rounds: list[Round] = []
     tried: set[str] = set()
     doubt, members, curves = np.zeros(len(fitted)), 0, True
+    deep = True
     while True:
         now = rounds[-1].after if rounds else first
         present = {t.id for t in now.fit.model.terms}
         open_effects = [e for e in effects if e not in present and e not in tried]
-        left = _Open(open_effects, doubt, rounds, len(rounds) < most, curves)
+        left = _Open(open_effects, doubt, rounds, len(rounds) < most, curves, deep)
         found = _next(rows, fitted, now, left)
         if found.added is not None:
-            curves = True
+            curves, deep = True, False
             gained = misfits(fitted, now.fit) - misfits(fitted, found.added.stage.fit)
             doubt = doubt + _doubt(found.added.effect) ** 2 * np.maximum(gained, 0.0)
             tried |= set(found.added.dropped)
@@ -122,9 +123,13 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         if better is None and found.waits:
             curves = False
             continue
+        if better is None and not deep and found.contest.ranked[0][0] == UNKNOWN:
+            deep = True
+            continue
         if better is None:
             return Search(start, refitted, tuple(rounds), found.contest, found.rejected)
         members += len(better.effects)
+        deep = False
         before = rounds[-1].corrected
         if before is not None:
             better = replace(better, effects=(*before.effects, *better.effects))
@@ -142,6 +147,8 @@ class _Open:
     more: bool
     curves: bool
     """Whether the curves of what was added may explain more than a further effect."""
+    deep: bool
+    """Whether joints and pairs are searched before what is left is called unknown."""
 
 
 @dataclass(frozen=True)
@@ -159,11 +166,13 @@ def _next(
     rows: Sequence[RecordRows], fitted: Sequence[RecordRows], now: Stage, left: _Open
 ) -> _Next:
     """Return the next round: the contest, and the effect that it names, added."""
-    contest, fits = _contest(fitted, now.fit, left.effects, left.doubt)
+    little = _within_doubt(rows, left.rounds)
+    deep = left.deep and not little
+    contest, fits = _contest(fitted, now.fit, left.effects, left.doubt, deep=deep)
     name = contest.ranked[0][0]
     if name in (AGREES, UNKNOWN) or not left.more:
         return _Next(contest)
-    if _within_doubt(rows, left.rounds):
+    if little:
         return _Next(contest.without(name, AGREES))
     mended = _mended(fitted, now.fit, contest, name, fits.get(name))
     gained = now.fit.chi2 - mended.chi2
@@ -241,7 +250,7 @@ def _refused(
 
 
 def _contest(
-    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str], doubt: Array
+    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str], doubt: Array, *, deep: bool
 ) -> tuple[Contest, dict[str, ModelFit]]:
     reversal = next(
         (
@@ -256,7 +265,7 @@ def _contest(
     contest = run_contest(rows, fit, effects, reversal=reversal, tolerated=tolerated)
     contest, fits = refine(rows, fit, contest, effects)
     simulated = all(r.cycle_rows is not None for r in rows)  # a long record takes minutes
-    if contest.ranked[0][0] != UNKNOWN or not simulated:
+    if contest.ranked[0][0] != UNKNOWN or not (simulated and deep):
         return contest, fits
     # A joint's first start seldom leads to its best fit: none shall be unknown for that.
     for name in (e for e in contest.starts if is_joint(e)):
