@@ -11,7 +11,7 @@ from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
-from discover.naming.ahead import pairs_ahead
+from discover.naming.ahead import every_joint, pairs_ahead
 from discover.naming.contest import AGREES, UNKNOWN, Contest, reweighed, run_contest
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import has_joint, is_joint
@@ -267,13 +267,7 @@ def _contest(
     simulated = all(r.cycle_rows is not None for r in rows)  # a long record takes minutes
     if contest.ranked[0][0] != UNKNOWN or not (simulated and deep):
         return contest, fits
-    # A joint's first start seldom leads to its best fit: none shall be unknown for that.
-    for name in (e for e in contest.starts if is_joint(e)):
-        begun = fits.get(name)
-        if begun is None:
-            model = extended(fit.model, contest.starts[name][0])
-            begun = fit_model(rows, model, (), exact=False)
-        fits[name] = restarted(rows, begun, instead_of=fit)
+    fits = every_joint(rows, fit, contest, fits)
     contest = reweighed(rows, contest, fit, fits, effects)
     if contest.ranked[0][0] != UNKNOWN:
         return contest, fits

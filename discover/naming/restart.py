@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 
 from discover.naming.candidates import Scales, scales_of
+from discover.naming.columns import without_span
 from discover.naming.fit import (
     ModelFit,
     UnitRows,
@@ -21,9 +22,10 @@ from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 
 _FACTORS = {  # of a joint's shape
-    "contact": (0.4, 1.0, 2.5), "gap": (0.7, 0.85, 1.0, 1.2), "limit": (0.95, 1.0, 1.05)
+    "contact": (0.4, 1.0, 2.5), "gap": (0.7, 0.85, 1.0, 1.2),
+    "limit": (0.6, 0.75, 0.87, 0.95, 1.0, 1.05, 1.15),
 }
-_LOSSES = (0.1, 0.5)
+_LOSSES: tuple[float, ...] = (0.1, 0.5)
 _LAGS = (0.03, 0.06, 0.12)  # of a valve, over the greatest angular frequency
 _SPRINGS = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # factors of a compliance
 _LOADS = (  # half load over the greatest force, and the share of compliance that load takes
@@ -57,7 +59,11 @@ def polished(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
 
 
 def restarted(
-    rows: Sequence[RecordRows], fit: ModelFit, *, instead_of: ModelFit | None = None
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    *,
+    instead_of: ModelFit | None = None,
+    besides: Sequence[FittedTerm] = (),
 ) -> ModelFit:
     """Return the best of the fit and fits from other shapes of the joint that is its last term.
 
@@ -69,11 +75,13 @@ def restarted(
         Where the first start led; returned as it is where it leaves little.
     instead_of : ModelFit, optional
         Without the joint. Where no start is better by far, none is followed.
+    besides : sequence of FittedTerm
+        Other joints to start from.
     """
     for _ in range(_TURNS):
         if fit.chi2 < _GOOD * fit.residual.size:
             break
-        before, fit = fit.chi2, _best_start(rows, fit, instead_of)
+        before, fit = fit.chi2, _best_start(rows, fit, instead_of, besides)
         if fit.chi2 > _MUCH * before:
             break
     return fit
@@ -109,26 +117,35 @@ def _best_range(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
 
 
 def _best_start(
-    rows: Sequence[RecordRows], fit: ModelFit, instead_of: ModelFit | None
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    instead_of: ModelFit | None,
+    besides: Sequence[FittedTerm],
 ) -> ModelFit:
+    """Return the best of the fit and fits from a few starts, of what added forces can't explain."""
     *rest, joint = fit.model.terms
     units = UnitRows()
     chosen = _telling(rows, fit if instead_of is None else instead_of)
     telling = [rows[i] for i in chosen]
+    forces = [t for t in rest if t.term.acts == "force"]
+    span = np.stack([units.of_all(telling, t) for t in forces]) if forces else None
     starts = []
-    for other in _others(joint, scales_of([r.observation for r in rows])):
+    scales = scales_of([r.observation for r in rows])
+    for other in (*besides, *_others(joint, scales)):
         model = ForceModel((*rest, other), fit.model.name)
-        starts.append(fit_model(telling, model, (), units=units))
-    starts.sort(key=lambda f: f.chi2)
+        start = fit_model(telling, model, (), units=units)
+        left = start.residual[None] if span is None else without_span(start.residual[None], span)
+        starts.append((float(np.sum(left**2)), start.model))
+    starts.sort(key=lambda s: np.nan_to_num(s[0], nan=np.inf))
     if instead_of is not None and starts:
-        if starts[0].chi2 > _BY_FAR * float(np.sum(misfits(rows, instead_of)[chosen])):
+        if starts[0][0] > _BY_FAR * float(np.sum(misfits(rows, instead_of)[chosen])):
             return fit
     begun = [
         fit_model(
-            telling, s.model, free_parameters(s.model), iterations=_FIRST_STEPS, units=units,
+            telling, model, free_parameters(model), iterations=_FIRST_STEPS, units=units,
             exact=False,
         )
-        for s in starts[:_FIRST]
+        for _, model in starts[:_FIRST]
     ]
     best = min(begun, key=lambda f: f.chi2, default=fit)
     again = fit_model(
@@ -163,12 +180,13 @@ def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
     if not joint.shape.get("contact", 0.0):
         return []
     names = [n for n in _FACTORS if n in joint.shape]
-    choices: list[dict[str, float]] = [{}]
+    losses, choices = _LOSSES, [dict[str, float]()]
     if joint.id == "cavitation":
+        losses = (joint.shape["loss"],)
         choices += [{"refill": 1.0, "lag": lag / scales.omega} for lag in _LAGS]
     found = []
     scaled = product(*(_FACTORS[n] for n in names))
-    for factors, loss, choice in product(scaled, _LOSSES, choices):
+    for factors, loss, choice in product(scaled, losses, choices):
         shape = {n: joint.shape[n] * f for n, f in zip(names, factors, strict=True)}
         found.append(FittedTerm(joint.id, 1.0, {**joint.shape, **shape, "loss": loss, **choice}))
     return found
