@@ -174,7 +174,26 @@ def _next(
         return _Next(contest)
     if little:
         return _Next(contest.without(name, AGREES))
-    mended = _mended(fitted, now.fit, contest, name, fits.get(name))
+    tried = _tried(rows, fitted, now, left, contest, fits.get(name), name)
+    other = contest.partner(name)
+    if tried.rejected is not None and other is not None:
+        # Of two that are missing the first alone may only trade one record's gap for another's.
+        second = _tried(rows, fitted, now, left, contest.without(name, other), None, other)
+        tried = tried if second.added is None else second
+    return tried
+
+
+def _tried(
+    rows: Sequence[RecordRows],
+    fitted: Sequence[RecordRows],
+    now: Stage,
+    left: _Open,
+    contest: Contest,
+    begun: ModelFit | None,
+    name: str,
+) -> _Next:
+    """Return the round that adds an effect, or what speaks against it."""
+    mended = _mended(fitted, now.fit, contest, name, begun)
     gained = now.fit.chi2 - mended.chi2
     if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
         return _Next(_refused(rows, now, contest, name, left.rounds))

@@ -21,7 +21,7 @@ from discover.naming.fit import ModelFit, kind_of
 from discover.naming.forces import is_joint
 from discover.naming.rows import RecordRows
 from models.checks import Array
-from models.terms import TERMS
+from models.terms import TERMS, Shape
 
 AGREES = "agrees"
 UNKNOWN = "unknown"
@@ -48,6 +48,8 @@ _REFUTED = 40.0  # nats at most, that rows take back which an effect makes worse
 _UNSEEN = 15.0  # nats that a change over time loses where none is seen inside the records
 _SEEN = 10.0  # of chi-square, from which one is
 _UNEVEN = 5
+_SLOW_FALL = 0.08  # m/s: seals' friction has fallen by then (mm/s to cm/s in the literature)
+_UNUSUAL = 8.0  # nats for each factor of e above it
 _NEEDS = {"stribeck-friction": "coulomb-friction"}  # a fall needs a friction to fall to
 
 
@@ -103,6 +105,12 @@ class Contest:
         chances[other] += chances[effect]
         chances[effect] = 0.0
         return replace(self, probabilities=chances)
+
+    def partner(self, effect: str) -> str | None:
+        """Return what is beside `effect` in the best pair that holds it; None without one."""
+        pairs = (e.effects for e in self.entries if len(e.effects) == 2 and effect in e.effects)
+        found = next(pairs, None)
+        return None if found is None else found[1 - found.index(effect)]
 
     def best(self, effect: str) -> Entry | None:
         """Return the best hypothesis that adds `effect` alone."""
@@ -217,8 +225,14 @@ def _single(
     if TERMS[v.effect].nonnegative and solution[0] <= 0.0:
         return None
     now = chi2 - float(solution @ (freed @ target))
-    value = evidence(now, len(v.parts) + v.shapes)
+    value = evidence(now, len(v.parts) + v.shapes) - _unusual(v.parts[0].shape)
     return Entry((v.effect,), (v,), (tuple(solution),), now, value)
+
+
+def _unusual(shape: Shape) -> float:
+    """Return the nats by which a shape is less likely than others before any measurement."""
+    over = shape.get("stribeck_velocity", 0.0) / _SLOW_FALL
+    return _UNUSUAL * float(np.log(over)) if over > 1.0 else 0.0
 
 
 def _pairs(
@@ -378,6 +392,7 @@ def reweighed(
         value = -0.5 * cost(chi2 - contest.noise, informative, contest.tolerated)
         value -= 0.5 * spent * float(np.log(contest.rows))
         value -= _over_time(rows, fit.residual, found.residual, e.effects[0])
+        value -= _unusual(found.model.terms[-1].shape)
         entries.append(replace(e, chi2=chi2, log_evidence=value))
     entries.sort(key=lambda e: -e.log_evidence)
     usual = _usual_left(rows, contest.tolerated)
