@@ -22,6 +22,7 @@ from models.fractional import harmonic_factors
 from models.motion import Motion
 from models.terms import TERMS, Shape, Term, find_term, own_terms
 from models.terms.own import same_file
+from models.terms.term import ForceOf
 
 WHOLE_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
 """Of the derivative of displacement that a term is."""
@@ -139,15 +140,19 @@ class ForceModel:
 
     def force(self, motion: Motion) -> Array:
         """Return the force for `motion`, (N,) N."""
-        added = [t for t in self.terms if t.term.acts == "force"]
+        return self.changed(self.added, motion)
 
-        def of_terms(moved: Motion) -> Array:
-            total = np.zeros_like(moved.displacement)
-            for fitted in added:
-                column = fitted.term.column
-                if column is not None:
-                    total += fitted.coefficient * column(moved, fitted.shape)
-            return total
+    def added(self, motion: Motion) -> Array:
+        """Return the sum of the terms that add a force for `motion`, (N,) N."""
+        total = np.zeros_like(motion.displacement)
+        for fitted in self.terms:
+            column = fitted.term.column
+            if fitted.term.acts == "force" and column is not None:
+                total += fitted.coefficient * column(motion, fitted.shape)
+        return total
+
+    def changed(self, added: ForceOf, motion: Motion) -> Array:
+        """Return what the input and output effects make of an added force, (N,) N."""
 
         def wrap(inner: Any, fitted: FittedTerm) -> Any:
             transform = fitted.term.transform
@@ -155,7 +160,7 @@ class ForceModel:
 
         chain = [t for t in self.terms if t.term.acts == "input"]
         chain += [t for t in self.terms if t.term.acts == "output"]
-        result: Array = reduce(wrap, chain, of_terms)(motion)
+        result: Array = reduce(wrap, chain, added)(motion)
         return result
 
     def dynamic_stiffness(self, omega: ArrayLike) -> NDArray[np.complex128]:

@@ -156,7 +156,7 @@ def run_contest(
     scales = scales_of([r.observation for r in rows], reversal)
     terms = {t.id for r in rows[:1] for t in (*r.held, *fit.model.terms)}
     possible = [e for e in effects if _NEEDS.get(e, e) in terms or e not in _NEEDS]
-    chosen = [v for e in possible for v in variants(e, scales)]
+    chosen = [v for e in possible for v in variants(e, scales) if _can_show(v, terms)]
     informative = sum(r.informative for r in rows)
     size = fit.residual.size
     dof = size - len(fit.parameters)
@@ -195,6 +195,11 @@ def run_contest(
     usual = _usual_left(rows, tolerated)
     probabilities = _probabilities(everything, effects, chi2 - noise, informative, usual)
     return Contest(tuple(everything), probabilities, chi2 - noise, size, noise, tolerated, starts)
+
+
+def _can_show(v: Variant, terms: set[str]) -> bool:
+    """Tell whether a shape is told apart: friction near a place from friction all along."""
+    return not v.parts[0].shape.get("width", 0.0) or "coulomb-friction" in terms
 
 
 def _starts(singles: Sequence[Entry]) -> dict[str, tuple[Entry, ...]]:

@@ -11,7 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.naming.forces import DELAY, Trial, change_on_cycle, is_joint, model_force
+from discover.naming.forces import (
+    DELAY,
+    Trial,
+    change_on_cycle,
+    is_joint,
+    model_force,
+    steady_part,
+)
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import WHOLE_ORDERS, FittedTerm, ForceModel
@@ -26,6 +33,9 @@ _TRIES = 6
 _DAMPING = 1e-4
 _LEAST_DAMPING = 1e-10
 _SMALL = 1e-4
+_FORCES = 4  # a record, that are remembered
+
+ForceKey = tuple[tuple[str, float, tuple[tuple[str, float], ...]], ...]
 
 
 @dataclass(frozen=True)
@@ -116,6 +126,7 @@ class UnitRows:
     def __init__(self) -> None:
         self._known: dict[tuple[int, str, tuple[tuple[str, float], ...]], Array] = {}
         self._rows: dict[int, RecordRows] = {}
+        self._forces: dict[int, dict[ForceKey, Array]] = {}
 
     def of(self, r: RecordRows, fitted: FittedTerm) -> Array:
         """Return the rows (R,) of a term that adds a force, in one record."""
@@ -149,8 +160,23 @@ class UnitRows:
                 result += t.coefficient * self.of(r, t)
         if changes and r.cycle_rows is not None:
             with np.errstate(over="ignore", invalid="ignore"):  # a joint that shakes itself apart
-                result += change_on_cycle(r.observation, whole) @ r.cycle_rows
+                result += self._change(r, steady_part(whole)) @ r.cycle_rows
         return result
+
+    def _change(self, r: RecordRows, steady: ForceModel) -> Array:
+        """Return what a joint or a sensor changes: the force before it is evaluated once."""
+        cycle = r.observation.cycle
+        if cycle is None:
+            raise ValueError("only a sine test has a cycle")
+        added = tuple(t for t in steady.terms if t.term.acts == "force")
+        key = tuple((t.id, t.coefficient, tuple(t.shape.items())) for t in added)
+        self._rows[id(r)] = r
+        known = self._forces.setdefault(id(r), {})
+        if key not in known:
+            while len(known) >= _FORCES:
+                known.pop(next(iter(known)))
+            known[key] = steady.added(cycle)
+        return change_on_cycle(r.observation, steady, known[key])
 
 
 def _transforms(rows: Sequence[RecordRows], model: ForceModel) -> bool:

@@ -61,9 +61,7 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
     if cycle is None or not any(needs_cycle(t.term, t.shape) for t in model.terms):
         return model.force(motion)
     plain = ForceModel(tuple(t for t in model.terms if not needs_cycle(t.term, t.shape)))
-    steady = ForceModel(tuple(t for t in model.terms if not _changes(t)))
-    steady_plain = ForceModel(tuple(t for t in plain.terms if not _changes(t)))
-    change = steady.force(cycle) - steady_plain.force(cycle)
+    change = steady_part(model).force(cycle) - steady_part(plain).force(cycle)
     return plain.force(motion) + _from_cycle(observation, change)
 
 
@@ -87,18 +85,32 @@ def _aligned(
     return between_samples(force, whole, delay, degree)[count:]
 
 
-def change_on_cycle(observation: Observation, model: ForceModel) -> Array:
-    """Return what changes of input and output do to a model's force over one cycle, (G,) N."""
+def steady_part(model: ForceModel) -> ForceModel:
+    """Return a model without what changes over time: it has a steady cycle."""
+    return ForceModel(tuple(t for t in model.terms if t.term.follows != "time"))
+
+
+def change_on_cycle(observation: Observation, model: ForceModel, added: Array) -> Array:
+    """Return what changes of input and output do to a model's force over one cycle, (G,) N.
+
+    Parameters
+    ----------
+    observation : Observation
+        Of a sine test.
+    model : ForceModel
+        Its `steady_part`.
+    added : ndarray, shape (G,)
+        The sum of the model's terms that add a force on the cycle, N. Where it is the same array
+        again, joints know their device.
+    """
     cycle = observation.cycle
     if cycle is None:
         raise ValueError("only a sine test has a cycle")
-    steady = ForceModel(tuple(t for t in model.terms if not _changes(t)))
-    added = ForceModel(tuple(t for t in steady.terms if t.term.acts == "force"))
-    return steady.force(cycle) - added.force(cycle)
 
+    def force_of(moved: Motion) -> Array:
+        return added if moved is cycle else model.added(moved)
 
-def _changes(fitted: FittedTerm) -> bool:
-    return fitted.term.follows == "time"
+    return model.changed(force_of, cycle) - added
 
 
 @dataclass(frozen=True)
@@ -125,7 +137,7 @@ class Trial:
 
     @property
     def _steady(self) -> ForceModel:
-        return ForceModel(tuple(t for t in self.model.terms if not _changes(t)))
+        return steady_part(self.model)
 
     def on_cycle(self, term: Term, shape: Shape) -> bool:
         """Tell whether a term is evaluated over one steady cycle: all but jumps and slow change."""

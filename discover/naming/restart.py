@@ -163,20 +163,7 @@ def _telling(rows: Sequence[RecordRows], fit: ModelFit) -> list[int]:
 def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
     """Return joints around one, in a campaign of these scales; none for other effects."""
     if joint.id == "series-compliance":
-        sides = [s for s in (0.0, 1.0, -1.0) if s != joint.shape["side"]]
-        turned = [{"side": s} for s in sides if joint.shape["half_load"] > 0.0]
-        loaded = [
-            {
-                "half_load": load * scales.force, "load_share": share, "side": side,
-                "loss": _SPRING_LOSS,
-            }
-            for side in dict.fromkeys((0.0, joint.shape["side"])) for load, share in _LOADS
-        ]
-        factors = [(1.0, s) for s in turned] + [(f, s) for f in _SPRINGS for s in loaded]
-        return [
-            FittedTerm(joint.id, joint.coefficient * factor, {**joint.shape, **shape})
-            for factor, shape in factors
-        ]
+        return _springs(joint, scales)
     if not joint.shape.get("contact", 0.0):
         return []
     names = [n for n in _FACTORS if n in joint.shape]
@@ -190,3 +177,24 @@ def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
         shape = {n: joint.shape[n] * f for n, f in zip(names, factors, strict=True)}
         found.append(FittedTerm(joint.id, 1.0, {**joint.shape, **shape, "loss": loss, **choice}))
     return found
+
+
+def _springs(spring: FittedTerm, scales: Scales) -> list[FittedTerm]:
+    """Return springs around one: as stiff on its other sides, and others that load changes."""
+    own = spring.shape["side"]
+    sides = [s for s in (0.0, 1.0, -1.0) if s != own and spring.shape["half_load"] > 0.0]
+    turned = [
+        FittedTerm(spring.id, spring.coefficient, {**spring.shape, "side": side}) for side in sides
+    ]
+    return turned + [
+        FittedTerm(
+            spring.id, spring.coefficient * factor,
+            {
+                **spring.shape, "half_load": load * scales.force, "load_share": share,
+                "side": side, "loss": _SPRING_LOSS,
+            },
+        )
+        for factor in _SPRINGS
+        for side in dict.fromkeys((0.0, own))
+        for load, share in _LOADS
+    ]

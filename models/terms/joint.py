@@ -28,6 +28,7 @@ _NEWTON = 2  # steps for the speed after friction
 _SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
 _REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
 _WIDE = 3.0  # ranges of reversal, beyond which friction is whole
+_MOST_DEVICES = 128  # that are remembered
 
 
 @dataclass(frozen=True)
@@ -59,13 +60,9 @@ class Joint:
     """True where dry friction is beside the joint and not behind it."""
 
 
-class _Last:
-    """What was last asked for: the same device is tried behind many joints.
-
-    Its parts are replaced together, so that threads never see one's force with another's device.
-    """
-
-    known: tuple[ReferenceType[Array], ReferenceType[Motion], Array] | None = None
+_Known = tuple[ReferenceType[Array], ReferenceType[Motion], Array]
+_DEVICES: dict[tuple[int, int, bool], _Known] = {}
+"""What was asked for last, by force and motion: the same devices are tried behind many joints."""
 
 
 def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> Array:
@@ -85,13 +82,16 @@ def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> 
         The device: what is lost without displacement is its spring's. At one frequency nothing
         else tells a spring from a mass.
     """
-    last = _Last.known
-    if last is not None and last[0]() is force and last[1]() is motion:
-        return last[2]
+    key = id(force), id(motion), force_of is None
+    known = _DEVICES.get(key)
+    if known is not None and known[0]() is force and known[1]() is motion:
+        return known[2]
     stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of)
     place = motion.displacement - motion.displacement.mean()
     found = np.append(_device(force - stiffness * place, motion), stiffness)
-    _Last.known = ref(force), ref(motion), found
+    while len(_DEVICES) >= _MOST_DEVICES:
+        _DEVICES.pop(next(iter(_DEVICES)), None)
+    _DEVICES[key] = ref(force), ref(motion), found
     return found
 
 
@@ -226,7 +226,7 @@ def _step(
                 now = speed + 0.5 * h * rate  # half a step on: there the place is known
                 force = 0.0
                 if half_load > 0.0 and (load_side == 0.0 or load_side * depth > 0.0):
-                    # depth = force ((1 - taken) + taken half_load / (half_load + force)) / stiffness
+                    # depth stiffness = force (1 - taken + taken half_load / (half_load + force))
                     stiff = stiffness / (1.0 - taken)
                     rest = abs(depth) * stiff - half_load / (1.0 - taken)
                     force = abs(depth) * stiff * half_load
