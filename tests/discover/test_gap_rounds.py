@@ -103,3 +103,14 @@ def test_a_large_offset_has_no_shape_that_could_hide_a_small_friction():
 
     found = close_gap(campaign(law, noise=0.002), "fit:inertia,viscous-damping")
     assert [r.effect for r in found.rounds] == ["force-offset", "coulomb-friction"]
+
+
+def test_viscous_damping_is_tried_though_friction_stands_for_it():
+    """Friction that reverses over a wide range of speed spans what viscous damping would add."""
+
+    def law(t, x, v, a):
+        return 120.0 * a + 900.0 * v + 3000.0 * v * np.abs(v) + 10.0 * np.tanh(v / 0.003)
+
+    found = close_gap(campaign(law, seed=1), "fit:inertia,coulomb-friction,quadratic-damping")
+    assert [r.effect for r in found.rounds] == ["viscous-damping"]
+    assert found.final_gap_percent < 1.1 * found.noise_percent

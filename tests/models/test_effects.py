@@ -130,18 +130,56 @@ def test_drifts_start_at_nothing_and_settle():
     np.testing.assert_allclose(force(*LINEAR, gain), 1.1 * force(*LINEAR))
 
 
+def test_a_zero_that_wanders_is_a_sum_of_powers_of_time():
+    powers = [FittedTerm("sensor-drift", c, {"power": p}) for c, p in ((2.0, 1.0), (-30.0, 3.0))]
+    elapsed = MOTION.time - MOTION.time[0]
+    np.testing.assert_allclose(force(*powers), 2.0 * elapsed - 30.0 * elapsed**3)
+
+
+def test_friction_at_a_place_is_there_and_nowhere_else():
+    """A bump is whole at its place, a step half; three widths away there is nothing, or all."""
+    x, v = MOTION.displacement, MOTION.velocity
+    shape = {"power": 0.0, "place": 0.004, "width": 0.001}
+    near, far = np.abs(x - 0.004) < 1e-5, np.abs(x - 0.004) > 0.003
+    bump = force(FittedTerm("position-dependent-friction", 7.0, shape))
+    np.testing.assert_allclose(bump[near], 7.0 * np.sign(v[near]), rtol=1e-3)
+    assert np.abs(bump[far]).max() < 0.001 * 7.0
+    step = force(FittedTerm("position-dependent-friction", 7.0, {**shape, "form": 2.0}))
+    np.testing.assert_allclose(step[near], 3.5 * np.sign(v[near]), rtol=0.02)
+    beyond = far & (x > 0.004)
+    np.testing.assert_allclose(step[beyond], 7.0 * np.sign(v[beyond]), rtol=0.01)
+    assert np.abs(step[far & ~beyond]).max() < 0.02
+
+
+def test_bristles_that_slip_slowly_hold_what_friction_at_that_speed_is():
+    """LuGre's limits: deflected far, the state is the falling friction; it starts as a spring."""
+    length, fall = 2e-6, 0.05
+    shape = {"stribeck_velocity": fall, "presliding": length}
+    found = force(FittedTerm("stribeck-friction", 10.0, shape))
+    v = MOTION.velocity
+    slipping = np.abs(v) > 0.3 * np.abs(v).max()
+    expected = 10.0 * np.exp(-((v / fall) ** 2)) * np.sign(v)
+    assert np.abs(found - expected)[slipping].max() < 0.1
+    slow = sine_motion(1e-6, 0.01, samples=4096)  # deflects by less than it takes to slip
+    soft = force(FittedTerm("stribeck-friction", 10.0, {**shape, "presliding": 1e-4}), motion=slow)
+    np.testing.assert_allclose(np.ptp(soft), 10.0 * np.ptp(slow.displacement) / 1e-4, rtol=0.03)
+
+
 def test_a_gain_of_one_direction_leaves_the_other():
     plain = force(*LINEAR)
     found = force(*LINEAR, FittedTerm("sensor-gain", -0.1, {"one_way": 1.0, "side": 1.0}))
     np.testing.assert_allclose(found, np.where(plain > 0.0, 0.9 * plain, plain))
 
 
-@pytest.mark.parametrize(("load", "left"), [(1e-4, 1.0), (1e4, 0.3)])
-def test_gas_in_a_spring_is_soft_unloaded_and_gone_when_squeezed(load, left):
-    """Far below the force that halves the gas the spring is linear, far above only its rest is."""
+@pytest.mark.parametrize(
+    ("share", "load", "left"),
+    [(0.7, 1e-4, 1.0), (0.7, 1e4, 0.3), (-0.5, 1e-4, 1.0), (-0.5, 1e4, 1.5)],
+)
+def test_load_takes_a_spring_s_gas_or_opens_its_joints(share, load, left):
+    """Far below the force of half the change the spring is as unloaded, far above all changed."""
     compliance = 1e-5
     top = float(np.abs(force(*LINEAR)).max())
-    shape = {"loss": 0.02, "half_load": top / load, "load_share": 0.7}
+    shape = {"loss": 0.02, "half_load": top / load, "load_share": share}
     found = force(*LINEAR, FittedTerm("series-compliance", compliance, shape))
     device = -200.0 * OMEGA**2 + 1j * OMEGA * 900.0
     spring = 1.0 / (left * compliance)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from models.constitutive import FittedTerm, ForceModel
 from models.motion import harmonic_motion
 from models.terms.joint import Joint, device_of, through_joint
 
@@ -15,20 +16,39 @@ def motion(frequency, amplitude=0.008):
 
 
 @pytest.mark.parametrize("frequency", [0.3, 1.5, 3.0, 6.0])
-@pytest.mark.parametrize("loss", [0.02, 0.3])
-def test_a_spring_before_a_linear_device_has_its_transfer_function(frequency, loss):
+@pytest.mark.parametrize(("loss", "spring"), [(0.02, 0.0), (0.3, 0.0), (0.05, 2e4), (0.05, -4e3)])
+def test_a_spring_before_a_linear_device_has_its_transfer_function(frequency, loss, spring):
+    """Also one that has a spring itself, and one that a magnet pulls away from its middle."""
     given = motion(frequency)
     stiffness = MASS * (2.0 * np.pi * 3.1) ** 2  # resonance among the tests
-    force = MASS * given.acceleration + VISCOUS * given.velocity
-    found = through_joint(force, given, Joint(stiffness, loss), device_of(force, given))
+    model = ForceModel(tuple(
+        FittedTerm(name, value)
+        for name, value in (("inertia", MASS), ("viscous-damping", VISCOUS), ("stiffness", spring))
+    ))
+    force = model.force(given)
+    known = device_of(force, given, model.force)
+    found = through_joint(force, given, Joint(stiffness, loss), known)
     lines = np.fft.rfft(given.displacement)
     s = 2j * np.pi * frequency * np.arange(lines.size)
-    spring = stiffness + 2.0 * loss * np.sqrt(stiffness * MASS) * s
-    device = MASS * s**2 + VISCOUS * s
-    lines[1:] *= (device * spring / (device + spring))[1:]
+    mount = stiffness + 2.0 * loss * np.sqrt(stiffness * MASS) * s
+    device = MASS * s**2 + VISCOUS * s + spring
+    lines[1:] *= (device * mount / (device + mount))[1:]
     lines[0] = 0.0
     exact = np.fft.irfft(lines, force.size)
-    assert np.std(found - exact) < 3e-4 * np.std(exact)
+    assert np.std(found - exact) < 4e-4 * np.std(exact)
+
+
+def test_what_is_known_of_one_device_is_not_said_of_another():
+    """The same array is the same device; a changed one, or one asked about its spring, is not."""
+    given = motion(1.0)
+    spring = ForceModel((FittedTerm("inertia", MASS), FittedTerm("stiffness", 3e4)))
+    force = spring.force(given)
+    assert device_of(force, given)[5] == 0.0
+    assert device_of(force, given, spring.force)[[0, 5]] == pytest.approx([MASS, 3e4], rel=1e-6)
+    assert device_of(force, given)[5] == 0.0
+    assert device_of(2.0 * force, given, spring.force)[0] != device_of(force, given)[0]
+    for _ in range(300):  # more than are remembered
+        assert device_of(MASS * given.acceleration, given)[0] == pytest.approx(MASS)
 
 
 def test_a_damper_of_hardly_any_mass_follows_its_spring():
