@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import reduce
 from types import MappingProxyType
 from typing import Any
 
@@ -22,7 +21,7 @@ from models.fractional import harmonic_factors
 from models.motion import Motion
 from models.terms import TERMS, Shape, Term, find_term, own_terms
 from models.terms.own import same_file
-from models.terms.term import ForceOf
+from models.terms.term import Changed, ForceOf
 
 WHOLE_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
 """Of the derivative of displacement that a term is."""
@@ -153,15 +152,14 @@ class ForceModel:
 
     def changed(self, added: ForceOf, motion: Motion) -> Array:
         """Return what the input and output effects make of an added force, (N,) N."""
-
-        def wrap(inner: Any, fitted: FittedTerm) -> Any:
-            transform = fitted.term.transform
-            return lambda moved: transform(inner, moved, fitted.coefficient, fitted.shape)  # type: ignore[misc]
-
         chain = [t for t in self.terms if t.term.acts == "input"]
         chain += [t for t in self.terms if t.term.acts == "output"]
-        result: Array = reduce(wrap, chain, added)(motion)
-        return result
+        whole = added
+        for fitted in chain:
+            transform = fitted.term.transform
+            if transform is not None:
+                whole = Changed(whole, transform, fitted.coefficient, fitted.shape)
+        return whole(motion)
 
     def dynamic_stiffness(self, omega: ArrayLike) -> NDArray[np.complex128]:
         """Return F/X of the terms that are linear in displacement, N/m, at `omega` in rad/s.

@@ -168,7 +168,10 @@ def _next(
     """Return the next round: the contest, and the effect that it names, added."""
     little = _within_doubt(rows, left.rounds)
     deep = left.deep and not little
-    contest, fits = _contest(fitted, now.fit, left.effects, left.doubt, deep=deep)
+    contest, fits = _contest(
+        fitted, now.fit, left.effects, left.doubt,
+        joints=deep and not has_joint(now.fit.model), pairs=deep and not left.rounds,
+    )
     name = contest.ranked[0][0]
     if name in (AGREES, UNKNOWN) or not left.more:
         return _Next(contest)
@@ -269,7 +272,13 @@ def _refused(
 
 
 def _contest(
-    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str], doubt: Array, *, deep: bool
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    effects: Sequence[str],
+    doubt: Array,
+    *,
+    joints: bool,
+    pairs: bool,
 ) -> tuple[Contest, dict[str, ModelFit]]:
     reversal = next(
         (
@@ -284,15 +293,14 @@ def _contest(
     contest = run_contest(rows, fit, effects, reversal=reversal, tolerated=tolerated)
     contest, fits = refine(rows, fit, contest, effects)
     simulated = all(r.cycle_rows is not None for r in rows)  # a long record takes minutes
-    if contest.ranked[0][0] != UNKNOWN or not (simulated and deep):
-        return contest, fits
-    fits = every_joint(rows, fit, contest, fits)
-    contest = reweighed(rows, contest, fit, fits, effects)
-    if contest.ranked[0][0] != UNKNOWN:
-        return contest, fits
-    pairs = pairs_ahead(rows, contest, fits, effects)
-    contest = replace(contest, entries=(*contest.entries, *pairs))
-    return reweighed(rows, contest, fit, fits, effects), fits
+    if joints and simulated and contest.ranked[0][0] == UNKNOWN:
+        fits = every_joint(rows, fit, contest, fits)
+        contest = reweighed(rows, contest, fit, fits, effects)
+    if pairs and simulated and contest.ranked[0][0] == UNKNOWN:
+        found = pairs_ahead(rows, contest, fits, effects)
+        contest = replace(contest, entries=(*contest.entries, *found))
+        contest = reweighed(rows, contest, fit, fits, effects)
+    return contest, fits
 
 
 def _mended(

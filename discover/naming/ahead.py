@@ -8,7 +8,7 @@ import numpy as np
 
 from discover.naming.contest import Contest, Entry, pair_evidence, run_contest
 from discover.naming.fit import ModelFit, fit_model, free_parameters, kind_of
-from discover.naming.forces import is_joint
+from discover.naming.forces import DELAY, is_joint
 from discover.naming.refine import extended, refine
 from discover.naming.restart import restarted
 from discover.naming.rows import RecordRows
@@ -84,7 +84,7 @@ def pairs_ahead(
         model = fits[name].model
         begun = fit_model(rows, model, free_parameters(model), iterations=_STEPS)
         second, refined = refine(rows, begun, run_contest(rows, begun, others), others)
-        if place == 0 or is_joint(name):
+        if place == 0 and name != DELAY and not is_joint(name):  # two at once take minutes
             refined = every_joint(rows, begun, second, refined)
         for other in sorted(refined, key=lambda e: refined[e].chi2)[:_SECOND]:
             entry = second.best(other)

@@ -6,7 +6,7 @@ and whatever acts through a change of input or output, by Levenberg-Marquardt.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +22,7 @@ from discover.naming.forces import (
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import WHOLE_ORDERS, FittedTerm, ForceModel
+from models.motion import Motion
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "resampled",
                  "one_way")
@@ -34,8 +35,7 @@ _DAMPING = 1e-4
 _LEAST_DAMPING = 1e-10
 _SMALL = 1e-4
 _FORCES = 4  # a record, that are remembered
-
-ForceKey = tuple[tuple[str, float, tuple[tuple[str, float], ...]], ...]
+_COLUMNS = 64  # likewise
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,8 @@ class UnitRows:
     def __init__(self) -> None:
         self._known: dict[tuple[int, str, tuple[tuple[str, float], ...]], Array] = {}
         self._rows: dict[int, RecordRows] = {}
-        self._forces: dict[int, dict[ForceKey, Array]] = {}
+        self._forces: dict[int, dict[Hashable, Array]] = {}
+        self._columns: dict[int, dict[Hashable, Array]] = {}
 
     def of(self, r: RecordRows, fitted: FittedTerm) -> Array:
         """Return the rows (R,) of a term that adds a force, in one record."""
@@ -168,15 +169,35 @@ class UnitRows:
         cycle = r.observation.cycle
         if cycle is None:
             raise ValueError("only a sine test has a cycle")
-        added = tuple(t for t in steady.terms if t.term.acts == "force")
-        key = tuple((t.id, t.coefficient, tuple(t.shape.items())) for t in added)
         self._rows[id(r)] = r
+        added = [t for t in steady.terms if t.term.acts == "force"]
+        key = tuple((t.coefficient, *_shape_key(t)) for t in added)
         known = self._forces.setdefault(id(r), {})
         if key not in known:
-            while len(known) >= _FORCES:
-                known.pop(next(iter(known)))
-            known[key] = steady.added(cycle)
+            total = np.zeros_like(cycle.displacement)
+            for t in added:
+                total += t.coefficient * self._on_cycle(r, t, cycle)
+            _keep(known, key, total, most=_FORCES)
         return change_on_cycle(r.observation, steady, known[key])
+
+    def _on_cycle(self, r: RecordRows, fitted: FittedTerm, cycle: Motion) -> Array:
+        known = self._columns.setdefault(id(r), {})
+        key = _shape_key(fitted)
+        if key not in known:
+            unit = ForceModel((FittedTerm(fitted.id, 1.0, fitted.shape),))
+            _keep(known, key, unit.added(cycle), most=_COLUMNS)
+        return known[key]
+
+
+def _shape_key(fitted: FittedTerm) -> tuple[Hashable, ...]:
+    return fitted.id, tuple(fitted.shape.items())
+
+
+def _keep(known: dict[Hashable, Array], key: Hashable, value: Array, *, most: int) -> None:
+    """Remember a value, and forget the oldest where that are more than `most`."""
+    while len(known) >= most:
+        known.pop(next(iter(known)))
+    known[key] = value
 
 
 def _transforms(rows: Sequence[RecordRows], model: ForceModel) -> bool:

@@ -13,7 +13,7 @@ from scipy.optimize import nnls
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import ForceOf
+from models.terms.term import ForceOf, unchanged
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
@@ -97,9 +97,11 @@ def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> 
 
 def _stiffness(force: Array, motion: Motion, force_of: ForceOf) -> float:
     x = motion.displacement
-    at_rest = force_of(replace(motion, displacement=np.zeros_like(x)))
+    added = unchanged(force_of)
+    whole = force if added is force_of else added(motion)
+    at_rest = added(replace(motion, displacement=np.zeros_like(x)))
     place = x - x.mean()
-    slope = float((force - at_rest) @ place) / max(float(place @ place), 1e-300)
+    slope = float((whole - at_rest) @ place) / max(float(place @ place), 1e-300)
     return slope if np.isfinite(slope) else 0.0
 
 

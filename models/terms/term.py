@@ -17,6 +17,31 @@ Follows = Literal["motion", "path", "time"]
 
 
 @dataclass(frozen=True)
+class Changed:
+    """A force as an effect of input or output changes it: called like the force itself."""
+
+    force_of: ForceOf
+    """Before the effect."""
+    transform: Callable[[ForceOf, Motion, float, Shape], Array]
+    """Of the effect."""
+    coefficient: float
+    """Its size."""
+    shape: Shape
+    """Its shape parameters."""
+
+    def __call__(self, motion: Motion) -> Array:
+        """Return the changed force, (N,) N."""
+        return self.transform(self.force_of, motion, self.coefficient, self.shape)
+
+
+def unchanged(force_of: ForceOf) -> ForceOf:
+    """Return a force before all effects that change it."""
+    while isinstance(force_of, Changed):
+        force_of = force_of.force_of
+    return force_of
+
+
+@dataclass(frozen=True)
 class Parameter:
     """A shape parameter of a term, profiled out of every fit (it is not linear)."""
 
