@@ -12,7 +12,14 @@ from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
 from discover.naming.ahead import every_joint, pairs_ahead
-from discover.naming.contest import AGREES, UNKNOWN, Contest, reweighed, run_contest
+from discover.naming.contest import (
+    AGREES,
+    UNKNOWN,
+    Contest,
+    leaves_much,
+    reweighed,
+    run_contest,
+)
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import has_joint, is_joint
 from discover.naming.refine import extended, refine
@@ -296,7 +303,8 @@ def _contest(
     if joints and simulated and contest.ranked[0][0] == UNKNOWN:
         fits = every_joint(rows, fit, contest, fits)
         contest = reweighed(rows, contest, fit, fits, effects)
-    if pairs and simulated and contest.ranked[0][0] == UNKNOWN:
+    name = contest.ranked[0][0]
+    if pairs and simulated and (name == UNKNOWN or leaves_much(rows, contest, name)):
         found = pairs_ahead(rows, contest, fits, effects)
         contest = replace(contest, entries=(*contest.entries, *found))
         contest = reweighed(rows, contest, fit, fits, effects)

@@ -36,6 +36,7 @@ _UNKNOWN_SHARE = 0.6
 _UNKNOWN_COST = 3.0
 _LEFT = 0.12  # of the misfit, at which a shape is as likely the effect's as another's
 _LEFT_BY_JOINT = 0.3  # likewise: contact and loss are simplified, and impacts hard to meet
+_LEFT_ALONE = 0.04  # likewise, from which a second is sought beside it
 _LEFT_OF_FEW = 0.8  # likewise, where records are few
 _FEW = 4  # records
 _LEFT_BESIDE = 0.5  # likewise, beside shapes that were added before
@@ -343,6 +344,15 @@ def _doubt(entry: Entry, left: float, usual: tuple[float, float]) -> float:
     """Return the nats by which what a hypothesis leaves says that none is right."""
     share = usual[1] if is_joint(entry.effects[0]) else usual[0]
     return float(min(_LEFT_SLOPE * np.log(max(left, 1e-6) / share), _LEFT_MOST))
+
+
+def leaves_much(rows: Sequence[RecordRows], contest: Contest, effect: str) -> bool:
+    """Tell whether an effect alone leaves more of the misfit than what is really there would."""
+    alone = contest.best(effect)
+    if alone is None or contest.excess <= 0.0:
+        return False
+    usual = _LEFT_BY_JOINT if is_joint(effect) else _LEFT_ALONE
+    return len(rows) >= _FEW and alone.chi2 - contest.noise > usual * contest.excess
 
 
 def _over_time(rows: Sequence[RecordRows], before: Array, after: Array, effect: str) -> float:

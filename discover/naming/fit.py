@@ -36,6 +36,8 @@ _LEAST_DAMPING = 1e-10
 _SMALL = 1e-4
 _FORCES = 4  # a record, that are remembered
 _COLUMNS = 64  # likewise
+_SHARP = 0.05  # of the greatest speed, over which friction reverses at most beside no resistance
+_SLACK = 1.5  # of bounds in shares of what the records cover
 
 
 @dataclass(frozen=True)
@@ -243,18 +245,37 @@ def _tangents(
     return result
 
 
-def _bounded(model: ForceModel, parameters: Sequence[Parameter], values: Array) -> Array:
-    """Return values within their physical bounds: shapes move by at most half in one step."""
+def _bounded(
+    model: ForceModel,
+    parameters: Sequence[Parameter],
+    values: Array,
+    sizes: Mapping[str, float],
+) -> Array:
+    """Return values within their physical bounds: shapes move by at most half in one step.
+
+    Bounds in shares of what the records cover (`sizes`) give way a little: beyond them a shape
+    is another one's, as a friction that falls at a speed that no record reaches is plain friction.
+    Without viscous damping in the model friction has to reverse sharply: over a wide range of
+    speed it is a resistance, and would hide that one is missing.
+    """
     result = values.copy()
+    sharp = all(t.id != "viscous-damping" for t in model.terms)
     for index, parameter in enumerate(parameters):
         if parameter.shape is None:
             continue
-        term = model.terms[parameter.term].term
-        known = next(p for p in term.parameters if p.name == parameter.shape)
+        fitted = model.terms[parameter.term]
+        known = next(p for p in fitted.term.parameters if p.name == parameter.shape)
         old = value_of(model, parameter)
         low, high = (0.6 * old, 1.6 * old)
         if not known.scaled_by:
             low, high = max(low, known.lower), min(high, known.upper)
+        elif old > 0.0:
+            size = sizes[known.scaled_by]
+            upper = known.upper * _SLACK
+            if sharp and fitted.id == "coulomb-friction" and parameter.shape == "transition_speed":
+                upper = _SHARP
+            low = max(low, min(known.lower * size / _SLACK, old))
+            high = min(high, max(upper * size, old))
         if parameter.shape == "order":
             low, high = _apart(model, old, low, high)
         result[index] = float(np.clip(values[index], min(low, high), max(low, high)))
@@ -326,6 +347,7 @@ def fit_model(
         forces.
     """
     target = np.concatenate([r.target for r in rows])
+    sizes = {name: max(r.sizes[name] for r in rows) for name in rows[0].sizes}
     units = UnitRows() if units is None else units
     linear = not _transforms(rows, model)
     if linear:
@@ -358,12 +380,12 @@ def fit_model(
         before, pull = chi2, drawn(old)
         for _ in range(_TRIES):
             step = _step(gram, slope, damping)
-            values = _bounded(model, parameters, old + step / safe)
+            values = _bounded(model, parameters, old + step / safe, sizes)
             stuck = (values == old) & (step != 0.0)
             if stuck.any() and not stuck.all():  # at a bound: the others step without it
                 step = np.zeros(len(parameters))
                 step[~stuck] = _step(gram[np.ix_(~stuck, ~stuck)], slope[~stuck], damping)
-                values = _bounded(model, parameters, old + step / safe)
+                values = _bounded(model, parameters, old + step / safe, sizes)
             trial = with_values(model, parameters, values)
             if linear:
                 trial = _solved(rows, units, trial, parameters, target)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.naming.candidates import Part, Variant
 from discover.naming.contest import Contest, Entry, reweighed
 from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters
 from discover.naming.restart import best_range
@@ -20,8 +19,6 @@ _KINDS = (6, 4, 2, 1)  # of shapes that are fitted, of the first effect, the sec
 _FIRST_STEPS = 2
 _ITERATIONS = 8
 _ENOUGH = 0.02
-_WIDE = 0.05  # of the greatest speed, from which friction's reversal is like a resistance
-_SHARP = 0.003
 _SPRING = 8.0  # times the play, that its flanks give under the greatest force
 _WITHIN = 60.0  # nats behind the best that adds one effect, within which another is refined
 
@@ -70,15 +67,10 @@ def refine(
     frozen = _Frozen.of(rows, fit, units)
     fits: dict[str, ModelFit] = {}
     passed_over: list[str] = []
-    sharp = _sharp(rows, fit.model)
-    if sharp is not None:
-        contest, leading = _with_viscous(contest, leading, effects)
     for place, entry in enumerate(leading):
         name = entry.effects[0]
         starts = contest.starts[name][: _KINDS[min(place, len(_KINDS) - 1)]]
         models = [extended(fit.model, start) for start in starts]
-        if sharp is not None and TERMS[name].acts == "force":
-            models += [extended(sharp, start) for start in starts[:1]]
         if len(models) > 1:
             begun = [_fit(rows, m, units, _FIRST_STEPS, frozen) for m in models]
             models = [min(begun, key=lambda f: np.nan_to_num(f.chi2, nan=np.inf)).model]
@@ -98,42 +90,6 @@ def refine(
         entries=tuple(e for e in contest.entries if not set(passed_over) & set(e.effects)),
     )
     return reweighed(rows, contest, fit, fits, effects), fits
-
-
-def _sharp(rows: Sequence[RecordRows], model: ForceModel) -> ForceModel | None:
-    """Return the model with friction that reverses sharply, where it stands for a resistance."""
-    top = max(r.observation.speed for r in rows)
-    terms = [
-        FittedTerm(t.id, t.coefficient, {**t.shape, "transition_speed": _SHARP * top})
-        if t.id == "coulomb-friction" and t.shape["transition_speed"] > _WIDE * top
-        else t
-        for t in model.terms
-    ]
-    return None if tuple(terms) == model.terms else ForceModel(tuple(terms), model.name)
-
-
-def _with_viscous(
-    contest: Contest, leading: Sequence[Entry], effects: Sequence[str]
-) -> tuple[Contest, list[Entry]]:
-    """Return the contest and its leading effects with viscous damping among them.
-
-    Beside friction that reverses over a wide range of speed its own column explains nothing.
-    """
-    name = "viscous-damping"
-    if name not in effects or any(e.effects == (name,) for e in leading):
-        return contest, list(leading)
-    known = contest.best(name)
-    if known is None:
-        nothing = next(e for e in contest.entries if not e.effects)
-        known = replace(
-            nothing, effects=(name,), variants=(Variant(name, (Part(name),), 0),),
-            coefficients=((0.0,),),
-        )
-        contest = replace(
-            contest, entries=(*contest.entries, known),
-            starts={**contest.starts, name: (known,)},
-        )
-    return contest, [*leading, known]
 
 
 def is_a_spring(rows: Sequence[RecordRows], model: ForceModel) -> bool:

@@ -49,6 +49,16 @@ class RecordRows:
     """Number of the first rows, which a change over the record's time leaves; None: all."""
 
     @cached_property
+    def sizes(self) -> dict[str, float]:
+        """Greatest displacement (m), speed (m/s) and measured force (N)."""
+        motion = self.observation.motion
+        return {
+            "displacement": float(np.abs(motion.displacement).max()),
+            "speed": float(np.abs(motion.velocity).max()),
+            "force": float(np.abs(self.observation.measured).max()),
+        }
+
+    @cached_property
     def samples(self) -> RecordRows:
         """The first samples of a sine test, over their noise, as rows; others as they are.
 
