@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from discover.header import document_header
-from discover.motion_fit import Observation
+from discover.motion_fit import Observation, observe_all
 from discover.naming.forces import model_force
 from discover.records import Campaign, Finding
 from discover.study.accuracy import Accuracy, compare, noise_percent, pooled_percent
-from discover.study.preparation import observe_all
 from models.checks import Array, InputError
 from models.constitutive import ForceModel, SegmentedModel
 from models.flow import dean_per_speed

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from joblib import Parallel, delayed
 
 from discover.figure_data import GapFigureData
 from discover.gap.accuracy import pooled
@@ -16,7 +15,7 @@ from discover.gap.result import CorrectedCurve, Gap, MendedTerm, NamedEffect, Re
 from discover.gap.search import Round, Search, search
 from discover.gap.stages import Stage, seen_gap
 from discover.gap.where import places, surface, where_in_words
-from discover.motion_fit import Observation, observe
+from discover.motion_fit import observe_all
 from discover.naming.contest import AGREES, UNKNOWN, Contest
 from discover.naming.fit import ModelFit, whole_model
 from discover.naming.forces import model_force
@@ -81,17 +80,10 @@ def close_gap(
     chosen = known if effects is None else tuple(effects)
     for name in chosen:
         one_of("effect", name, known, where="effects")
-    observations = _observe(campaign, jobs)
+    observations = observe_all(campaign.records, jobs)
     baseline = prepare_baseline(observations, model, fixed=fixed, device=campaign.device)
     found = search(baseline, chosen)
     return _answer(campaign, baseline, found, seed)
-
-
-def _observe(campaign: Campaign, jobs: int) -> tuple[Observation, ...]:
-    if jobs <= 1 or len(campaign.records) < 2:
-        return tuple(observe(r) for r in campaign.records)
-    each = (delayed(observe)(r) for r in campaign.records)
-    return tuple(Parallel(n_jobs=jobs, prefer="threads")(each))
 
 
 def _unseen(stage: Stage) -> float | None:

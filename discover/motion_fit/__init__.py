@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
+from joblib import Parallel, delayed
+
 from discover.motion_fit.band import observe_band, observe_periodic
 from discover.motion_fit.harmonic import observe_sine
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
@@ -46,4 +51,13 @@ def observe(record: Record) -> Observation:
     return observe_band(record, kind.usable, name)
 
 
-__all__ = ["Lines", "Observation", "Window", "observe", "real_rows"]
+def observe_all(records: Sequence[Record], jobs: int) -> tuple[Observation, ...]:
+    """Return the observation of every record of a campaign, numbered, over `jobs` threads."""
+    if jobs <= 1 or len(records) < 2:
+        seen = [observe(r) for r in records]
+    else:
+        seen = Parallel(n_jobs=jobs, prefer="threads")(delayed(observe)(r) for r in records)
+    return tuple(replace(o, test=place) for place, o in enumerate(seen, start=1))
+
+
+__all__ = ["Lines", "Observation", "Window", "observe", "observe_all", "real_rows"]

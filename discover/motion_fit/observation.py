@@ -96,6 +96,8 @@ class Observation:
     the force's lines can be shifted."""
     noise: NoiseSpectrum | None = None
     """Of the force in a sine test that was sampled uniformly."""
+    test: int = 0
+    """Number of the record in its campaign, from 1; 0 where it is not known."""
     usable: slice = field(default_factory=lambda: slice(None))
     """Samples of the record that are used."""
 

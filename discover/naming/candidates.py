@@ -12,6 +12,8 @@ from models.motion import sine_motion
 from models.terms import TERMS
 from models.terms.trials import chosen_parameters, trial_shapes, trial_size
 
+_TESTS = 32  # of a campaign, from which a gain may have changed
+
 
 @dataclass(frozen=True)
 class Scales:
@@ -29,6 +31,8 @@ class Scales:
     """s, longest record."""
     omega: float
     """rad/s, highest."""
+    tests: int = 0
+    """Number of the last test of the campaign; 0 where it is not known."""
     reversal: float = 0.0
     """m/s over which the baseline's friction reverses."""
 
@@ -67,6 +71,7 @@ def scales_of(observations: Sequence[Observation], reversal: float = 0.0) -> Sca
         peaks=tuple(peaks),
         duration=max(float(o.time[-1] - o.time[0]) for o in observations),
         omega=max(float(w.frequency) for o in observations for w in o.windows) * 2.0 * np.pi,
+        tests=max(o.test for o in observations),
         reversal=reversal,
     )
 
@@ -271,7 +276,9 @@ def _gain(scales: Scales) -> list[Variant]:
         for t in chosen for probe in (0.1, -0.1)  # as measured, peaks in the range have the gain
     ]
     one_way = [_one("sensor-gain", 1, 1e-3, side=1.0, one_way=1.0)]
-    return uniform + ranges + one_way
+    later = range(2, scales.tests + 1, max(scales.tests // _TESTS, 1))
+    changed = [_one("sensor-gain", 1, 1e-3, side=1.0, from_test=float(test)) for test in later]
+    return uniform + ranges + one_way + changed
 
 
 def _clipping(scales: Scales) -> list[Variant]:

@@ -17,6 +17,7 @@ from discover.naming.forces import (
     change_on_cycle,
     is_joint,
     model_force,
+    of_test,
     steady_part,
 )
 from discover.naming.rows import RecordRows
@@ -25,7 +26,7 @@ from models.constitutive import WHOLE_ORDERS, FittedTerm, ForceModel
 from models.motion import Motion
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "resampled",
-                 "one_way")
+                 "one_way", "from_test")
 _APART = 0.1  # of orders: a fractional one from whole ones in the same model
 _STEP = 1e-4  # of a value, for its tangent
 _JOINT_STEP = 1e-3  # likewise behind a joint, whose simulated cycle closes to less
@@ -153,7 +154,7 @@ class UnitRows:
         return np.concatenate([self._of_record(r, model) for r in rows])
 
     def _of_record(self, r: RecordRows, model: ForceModel) -> Array:
-        whole = whole_model(r, model)
+        whole = of_test(r.observation, whole_model(r, model))
         changes = [t for t in whole.terms if t.term.acts != "force"]
         if any(t.id == DELAY for t in changes) or (changes and r.cycle_rows is None):
             return r.project(model_force(r.observation, whole))

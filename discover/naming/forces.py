@@ -34,6 +34,17 @@ def is_joint(effect: str) -> bool:
     return TERMS[effect].acts == "input" or effect == "cavitation"
 
 
+def sets_in(observation: Observation, shape: Shape) -> bool:
+    """Tell whether what a shape says is there in a record's test already."""
+    return observation.test == 0 or observation.test >= shape.get("from_test", 0.0)
+
+
+def of_test(observation: Observation, model: ForceModel) -> ForceModel:
+    """Return a model without what sets in at a later test of the campaign."""
+    terms = tuple(t for t in model.terms if sets_in(observation, t.shape))
+    return model if len(terms) == len(model.terms) else ForceModel(terms, model.name)
+
+
 def _from_cycle(observation: Observation, force: Array) -> Array:
     """Return a force on the cycle's grid at the record's samples."""
     cycle = observation.cycle
@@ -49,6 +60,7 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
 
     What has memory is evaluated over one steady cycle of a sine test; the rest at the samples.
     """
+    model = of_test(observation, model)
     delays = [t for t in model.terms if t.id == DELAY]
     if delays and observation.late is not None:
         rest = ForceModel(tuple(t for t in model.terms if t.id != DELAY))
@@ -72,14 +84,16 @@ def _aligned(
     time, force = observation.motion.time, model_force(observation, model)
     if observation.late is None:
         return between_samples(force, time, delay, degree)
-    count = min(int(abs(delay) / np.median(np.diff(time))) + _BEYOND, time.size)
-    span = float(time[count - 1] - time[0] + np.median(np.diff(time)))
-    early = -span if delay < 0.0 else span
-    other = model_force(replace(observation, motion=observation.late(early)), model)
+    step = float(np.median(np.diff(time)))
+    count = min(int(abs(delay) / step) + _BEYOND, time.size)
     if delay < 0.0:
+        span = float(time[-1] - time[-count]) + step
+        other = model_force(replace(observation, motion=observation.late(-span)), model)
         force = np.concatenate([force, other[-count:]])
         whole = np.concatenate([time, time[-count:] + span])
         return between_samples(force, whole, delay, degree)[: time.size]
+    span = float(time[count - 1] - time[0]) + step
+    other = model_force(replace(observation, motion=observation.late(span)), model)
     force = np.concatenate([other[:count], force])
     whole = np.concatenate([time[:count] - span, time])
     return between_samples(force, whole, delay, degree)[count:]
@@ -137,7 +151,7 @@ class Trial:
 
     @property
     def _steady(self) -> ForceModel:
-        return steady_part(self.model)
+        return steady_part(of_test(self.observation, self.model))
 
     def on_cycle(self, term: Term, shape: Shape) -> bool:
         """Tell whether a term is evaluated over one steady cycle: all but jumps and slow change."""
@@ -162,6 +176,8 @@ class Trial:
             return (model_force(self.observation, late) - self._late_from) / probe
         cycle = self.observation.cycle if self.on_cycle(term, shape) else None
         motion = self.observation.motion if cycle is None else cycle
+        if not sets_in(self.observation, shape):
+            return np.zeros_like(motion.displacement)
         if term.column is not None:
             return term.column(motion, shape)
         if term.transform is None:

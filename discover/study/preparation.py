@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from joblib import Parallel, delayed
 
 from discover.library.dictionary import DELAY, PLAIN, Dictionary, standard_dictionary
-from discover.motion_fit import Observation, observe
-from discover.records import Campaign, Finding, Record
+from discover.motion_fit import Observation, observe_all
+from discover.records import Campaign, Finding
 from discover.regression.support import MOST_DELAY, Support, solve
 from discover.selection.delay import delay_holds, further_delay, rich_delay
 from discover.selection.materiality import relative_triangle
@@ -49,13 +48,6 @@ class Prepared:
     """s: what the force channel was found to run late, taken out of the windows."""
     findings: tuple[Finding, ...]
     """What observing found."""
-
-
-def observe_all(records: tuple[Record, ...], jobs: int) -> tuple[Observation, ...]:
-    """Return the observation of every record, over `jobs` threads of work."""
-    if jobs <= 1 or len(records) < 2:
-        return tuple(observe(r) for r in records)
-    return tuple(Parallel(n_jobs=jobs, prefer="threads")(delayed(observe)(r) for r in records))
 
 
 def _range(grid: tuple[float, ...] | None, default: tuple[float, float]) -> tuple[float, float]:

@@ -1,4 +1,7 @@
-"""Sensor gain: the force channel reads too much or too little: throughout, in a range, one way."""
+"""Sensor gain: the force channel reads too much or too little.
+
+Throughout, in a range of the amplifier, one way, or from a test on.
+"""
 
 import numpy as np
 
@@ -12,6 +15,8 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
 
     The range reaches from a peak force of `threshold` (N) upwards, or up to it where `side` is
     negative. With `one_way` 1 the gain is that of tension (`side` 1) or compression (-1) only.
+    A gain that is there from a campaign's test number `from_test` on can't be told from the motion:
+    who knows the test leaves it out of earlier ones.
     """
     force = force_of(motion)
     if shape["one_way"] > 0.0:
@@ -31,6 +36,7 @@ TERM = Term(
         Parameter("threshold", 0.0, 1e9, 0.0, "N"),
         Parameter("side", -1.0, 1.0, 1.0, ""),
         Parameter("one_way", 0.0, 1.0, 0.0, ""),
+        Parameter("from_test", 0.0, 1e6, 0.0, ""),
     ),
     mistaken_for=("inertia", "viscous-damping"),
 )

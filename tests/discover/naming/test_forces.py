@@ -1,0 +1,63 @@
+"""A model's force on a record: which test it is, and samples that a late channel needs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from discover.gap import close_gap
+from discover.motion_fit import observe, observe_all
+from discover.naming.forces import model_force, of_test
+from models.constitutive import FittedTerm, ForceModel
+from tests.discover.gap_data import campaign, device
+
+MODEL = ForceModel((FittedTerm("inertia", 120.0), FittedTerm("viscous-damping", 800.0)))
+
+
+def with_term(name, value, **shape):
+    return ForceModel((*MODEL.terms, FittedTerm(name, value, shape)))
+
+
+@pytest.mark.parametrize("delay", [-0.0043, 0.0043])
+@pytest.mark.parametrize("lost", [slice(-7, -3), slice(2, 5), slice(0, 0)])
+def test_a_channel_aligned_by_a_spline_is_late_at_the_ends_too(delay, lost):
+    """Also where samples are missing there: what is before or after the record is the motion's."""
+    record = campaign(device, noise=0.0).records[0]
+    kept = np.delete(np.arange(record.time.size), lost)
+    shorter = replace(
+        record, time=record.time[kept], force=record.force[kept],
+        displacement=record.displacement[kept],
+    )
+    observation = observe(shorter)
+    late = model_force(observation, with_term("time-delay", delay, resampled=3.0))
+    omega = 2.0 * np.pi * record.frequency
+    then = observation.time - delay
+    exact = -120.0 * omega**2 * np.sin(omega * then) + 800.0 * omega * np.cos(omega * then)
+    assert np.abs(late - record.amplitude * exact).max() < 0.003 * record.amplitude * omega * 1000.0
+
+
+def test_a_gain_is_there_from_its_test_on():
+    observations = observe_all(campaign(device, noise=0.0).records, 1)
+    assert [o.test for o in observations] == list(range(1, 9))
+    model = with_term("sensor-gain", 0.2, from_test=4.0)
+    for o in observations:
+        gain = 1.2 if o.test >= 4 else 1.0
+        plain = model_force(o, MODEL)
+        step = 1e-5 * np.abs(plain).max()  # between points of the steady cycle
+        np.testing.assert_allclose(model_force(o, model), gain * plain, atol=step)
+    alone = observe(campaign(device).records[0])  # of no campaign: as after the change
+    assert of_test(alone, model) is model
+
+
+def test_a_gain_that_changed_between_two_tests_is_named_with_the_test():
+    plain = campaign(device, seed=4)
+    records = tuple(
+        replace(r, force=1.15 * r.force) if place >= 3 else r
+        for place, r in enumerate(plain.records, start=1)
+    )
+    found = close_gap(replace(plain, records=records), "fit:inertia,viscous-damping")
+    (only,) = found.rounds
+    assert only.effect == "sensor-gain"
+    assert found.to_dict()["rounds"][0]["parameters"]["from_test"] == 3.0
+    assert only.coefficient == pytest.approx(0.15, abs=0.003)
+    assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
