@@ -33,6 +33,8 @@ _LOADS = (  # half load over the greatest force, and the share of compliance tha
 )
 _SPRING_LOSS = 0.05
 _TRIED = 8  # records
+_FIRST_LEG = 2  # of them, that choose
+_SECOND_LEG = 16  # starts for the others
 _FIRST = 3  # that are begun
 _FIRST_STEPS = 3
 _AGAIN = 12
@@ -127,16 +129,11 @@ def _best_start(
     units = UnitRows()
     chosen = _telling(rows, fit if instead_of is None else instead_of)
     telling = [rows[i] for i in chosen]
-    forces = [t for t in rest if t.term.acts == "force"]
-    span = np.stack([units.of_all(telling, t) for t in forces]) if forces else None
-    starts = []
-    scales = scales_of([r.observation for r in rows])
-    for other in (*besides, *_others(joint, scales)):
-        model = ForceModel((*rest, other), fit.model.name)
-        start = fit_model(telling, model, (), units=units)
-        left = start.residual[None] if span is None else without_span(start.residual[None], span)
-        starts.append((float(np.sum(left**2)), start.model))
-    starts.sort(key=lambda s: np.nan_to_num(s[0], nan=np.inf))
+    others = (*besides, *_others(joint, scales_of([r.observation for r in rows])))
+    models = [ForceModel((*rest, other), fit.model.name) for other in others]
+    if len(models) > _SECOND_LEG:
+        models = [m for _, m in _ranked(telling[:_FIRST_LEG], models, units)[:_SECOND_LEG]]
+    starts = _ranked(telling, models, units)
     if instead_of is not None and starts:
         if starts[0][0] > _BY_FAR * float(np.sum(misfits(rows, instead_of)[chosen])):
             return fit
@@ -155,9 +152,23 @@ def _best_start(
     return again if again.chi2 < fit.chi2 else fit
 
 
+def _ranked(
+    rows: Sequence[RecordRows], models: Sequence[ForceModel], units: UnitRows
+) -> list[tuple[float, ForceModel]]:
+    """Return models with what of their misfits their own added forces leave, least first."""
+    forces = [t for t in models[0].terms if t.term.acts == "force"] if models else []
+    span = np.stack([units.of_all(rows, t) for t in forces]) if forces else None
+    found = []
+    for model in models:
+        left = fit_model(rows, model, (), units=units).residual[None]
+        left = left if span is None else without_span(left, span)
+        found.append((float(np.nan_to_num(np.sum(left**2), nan=np.inf)), model))
+    return sorted(found, key=lambda s: s[0])
+
+
 def _telling(rows: Sequence[RecordRows], fit: ModelFit) -> list[int]:
-    """Return which records have the greatest misfits: starts are tried on these."""
-    return sorted(int(i) for i in np.argsort(misfits(rows, fit))[::-1][:_TRIED])
+    """Return which records have the greatest misfits, that first: starts are tried on these."""
+    return [int(i) for i in np.argsort(misfits(rows, fit))[::-1][:_TRIED]]
 
 
 def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:

@@ -171,7 +171,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     rigid = rigid + behind * np.tanh(v / reversal) + spring * x
     most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
     resistance = viscous + quadratic * float(np.abs(v).max())
-    carried_along = _ADDED_MASS * float(np.std(rigid)) / float(np.std(motion.acceleration))
+    carried_along = _ADDED_MASS * _size(rigid) / _size(motion.acceleration)
     mass = max(mass, carried_along, resistance * motion.step / most)
     natural = float(np.sqrt((joint.stiffness + max(spring, 0.0)) / mass))
     fastest = max(natural, resistance / mass)
@@ -189,6 +189,11 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
         joint.half_load, joint.load_share, joint.load_side, passes,
     )
     return np.asarray(force + carried - rigid)
+
+
+def _size(values: Array) -> float:
+    """Return the root mean square."""
+    return float(np.sqrt(values @ values / values.size))
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")  # type: ignore[untyped-decorator]
