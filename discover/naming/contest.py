@@ -347,12 +347,11 @@ def _doubt(entry: Entry, left: float, usual: tuple[float, float]) -> float:
 
 
 def leaves_much(rows: Sequence[RecordRows], contest: Contest, effect: str) -> bool:
-    """Tell whether an effect alone leaves more of the misfit than what is really there would."""
-    alone = contest.best(effect)
-    if alone is None or contest.excess <= 0.0:
-        return False
+    """Tell whether an effect, alone or in a pair, leaves more than what is really there would."""
+    least = min((e.chi2 for e in contest.entries if e.effects[:1] == (effect,)), default=0.0)
     usual = _LEFT_BY_JOINT if is_joint(effect) else _LEFT_ALONE
-    return len(rows) >= _FEW and alone.chi2 - contest.noise > usual * contest.excess
+    enough = len(rows) >= _FEW and contest.excess > 0.0
+    return enough and least - contest.noise > usual * contest.excess
 
 
 def _over_time(rows: Sequence[RecordRows], before: Array, after: Array, effect: str) -> float:
