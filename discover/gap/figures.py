@@ -10,9 +10,9 @@ from discover.figure_data import EffectShape, GapCurves
 from discover.gap.accuracy import Misfit
 from discover.gap.search import Round
 from discover.gap.stages import without
-from discover.naming.fit import whole_model
 from discover.naming.forces import model_force, needs_cycle
 from discover.naming.rows import RecordRows
+from discover.naming.unit_rows import whole_model
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 from models.terms import Term

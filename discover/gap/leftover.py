@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from discover.gap.where import Place, misfit_at_samples, phase_means
-from discover.naming.fit import whole_model
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
+from discover.naming.unit_rows import whole_model
 from models.checks import Array
 from models.constitutive import ForceModel
 

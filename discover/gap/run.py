@@ -17,8 +17,9 @@ from discover.gap.stages import Stage, seen_gap
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import observe_all
 from discover.naming.contest import AGREES, UNKNOWN, Contest
-from discover.naming.fit import ModelFit, whole_model
+from discover.naming.fit import ModelFit
 from discover.naming.forces import model_force
+from discover.naming.unit_rows import whole_model
 from discover.record_checks import data_errors
 from discover.records import Campaign, Finding
 from models.checks import InputError, one_of

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.gap.accuracy import Misfit, misfit, pooled
-from discover.naming.fit import ModelFit, UnitRows, fit_model, whole_model
+from discover.naming.fit import ModelFit, fit_model
 from discover.naming.forces import has_joint, model_force
 from discover.naming.rows import RecordRows
+from discover.naming.unit_rows import UnitRows, whole_model
 from models.checks import Array
 from models.constitutive import ForceModel
 

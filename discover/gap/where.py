@@ -9,9 +9,9 @@ import numpy as np
 
 from discover.figure_data import MisfitCell
 from discover.motion_fit import Observation
-from discover.naming.fit import whole_model
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
+from discover.naming.unit_rows import whole_model
 from models.checks import Array, Indices
 from models.constitutive import ForceModel
 

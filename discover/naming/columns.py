@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from discover.naming.candidates import Variant
-from discover.naming.fit import whole_model
 from discover.naming.forces import Trial
 from discover.naming.rows import RecordRows
+from discover.naming.unit_rows import whole_model
 from models.checks import Array
 from models.constitutive import ForceModel
 from models.terms import TERMS

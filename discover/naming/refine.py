@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from discover.naming.contest import Contest, Entry, reweighed
-from discover.naming.fit import ModelFit, UnitRows, fit_model, free_parameters
+from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.restart import best_range
 from discover.naming.rows import RecordRows
+from discover.naming.unit_rows import UnitRows
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 
