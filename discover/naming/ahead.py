@@ -75,6 +75,8 @@ def pairs_ahead(
     if not leading or contest.excess <= 0.0:
         return ()
     least = fits[leading[0]].chi2 - contest.noise
+    if least <= 0.0:
+        return ()
     found = []
     for place, name in enumerate(leading[:_FIRST]):
         first = contest.best(name)
