@@ -348,10 +348,11 @@ def _doubt(entry: Entry, left: float, usual: tuple[float, float]) -> float:
 
 def leaves_much(rows: Sequence[RecordRows], contest: Contest, effect: str) -> bool:
     """Tell whether an effect, alone or in a pair, leaves more than what is really there would."""
+    if effect == AGREES or contest.excess <= 0.0 or len(rows) < _FEW:
+        return False
     least = min((e.chi2 for e in contest.entries if e.effects[:1] == (effect,)), default=0.0)
-    usual = _LEFT_BY_JOINT if is_joint(effect) else _LEFT_ALONE
-    enough = len(rows) >= _FEW and contest.excess > 0.0
-    return enough and least - contest.noise > usual * contest.excess
+    usual = _LEFT_BY_JOINT if effect != UNKNOWN and is_joint(effect) else _LEFT_ALONE
+    return least - contest.noise > usual * contest.excess
 
 
 def _over_time(rows: Sequence[RecordRows], before: Array, after: Array, effect: str) -> float:
