@@ -16,7 +16,8 @@ from discover.gap.search import Round, Search, search
 from discover.gap.stages import Stage, seen_gap
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import observe_all
-from discover.naming.contest import AGREES, UNKNOWN, Contest
+from discover.naming.contest import Contest
+from discover.naming.evidence import AGREES, UNKNOWN
 from discover.naming.fit import ModelFit
 from discover.naming.forces import model_force
 from discover.naming.unit_rows import whole_model

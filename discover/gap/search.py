@@ -12,14 +12,8 @@ from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
 from discover.naming.ahead import every_joint, pairs_ahead
-from discover.naming.contest import (
-    AGREES,
-    UNKNOWN,
-    Contest,
-    leaves_much,
-    reweighed,
-    run_contest,
-)
+from discover.naming.contest import Contest, leaves_much, reweighed, run_contest
+from discover.naming.evidence import AGREES, UNKNOWN
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import has_joint, is_joint
 from discover.naming.refine import extended, refine

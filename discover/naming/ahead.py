@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from discover.naming.contest import Contest, Entry, pair_evidence, run_contest
+from discover.naming.contest import Contest, pair_evidence, run_contest
+from discover.naming.evidence import Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters, kind_of
 from discover.naming.forces import DELAY, is_joint
 from discover.naming.refine import extended, refine
@@ -72,7 +73,7 @@ def pairs_ahead(
         Ids that were weighed.
     """
     leading = sorted((f for f in fits if np.isfinite(fits[f].chi2)), key=lambda f: fits[f].chi2)
-    if not leading or contest.excess <= 0.0:
+    if not leading:
         return ()
     least = fits[leading[0]].chi2 - contest.noise
     if least <= 0.0:

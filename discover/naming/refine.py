@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.naming.contest import Contest, Entry, reweighed
+from discover.naming.contest import Contest, reweighed
+from discover.naming.evidence import Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.restart import best_range
 from discover.naming.rows import RecordRows

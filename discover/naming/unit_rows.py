@@ -25,14 +25,14 @@ class UnitRows:
     """Whitened rows of terms with coefficient one: each shape is evaluated once."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple[int, str, tuple[tuple[str, float], ...]], Array] = {}
+        self._known: dict[Hashable, Array] = {}
         self._rows: dict[int, RecordRows] = {}
         self._forces: dict[int, dict[Hashable, Array]] = {}
         self._columns: dict[int, dict[Hashable, Array]] = {}
 
     def of(self, r: RecordRows, fitted: FittedTerm) -> Array:
         """Return the rows (R,) of a term that adds a force, in one record."""
-        key = (id(r), fitted.id, tuple(fitted.shape.items()))
+        key = (id(r), *_shape_key(fitted))
         self._rows[id(r)] = r  # kept, so that no other record gets its id
         if key not in self._known:
             trial = Trial(r.observation, ForceModel(()))

@@ -89,8 +89,8 @@ def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> 
     stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of)
     place = motion.displacement - motion.displacement.mean()
     found = np.append(_device(force - stiffness * place, motion), stiffness)
-    while len(_DEVICES) >= _MOST_DEVICES:
-        _DEVICES.pop(next(iter(_DEVICES)), None)
+    if len(_DEVICES) >= _MOST_DEVICES:
+        _DEVICES.pop(list(_DEVICES)[0], None)  # threads may be here too
     _DEVICES[key] = ref(force), ref(motion), found
     return found
 

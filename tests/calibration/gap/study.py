@@ -14,7 +14,7 @@ from joblib import Parallel, delayed
 from discover.gap import close_gap, prepare_baseline
 from discover.gap.result import Gap
 from discover.motion_fit import observe
-from discover.naming.contest import UNKNOWN
+from discover.naming.evidence import UNKNOWN
 from models.checks import InputError
 from models.constitutive import ForceModel
 from tests.calibration.gap.case import Case, campaign

@@ -1,0 +1,137 @@
+"""What a hypothesis' fit says: its evidence, and the probabilities of all names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from discover.naming.candidates import Variant
+from discover.naming.forces import is_joint
+from discover.naming.rows import RecordRows
+from models.checks import Array
+from models.terms import TERMS, Shape
+
+AGREES = "agrees"
+UNKNOWN = "unknown"
+_TEMPERATURE = 3.0
+_PRIOR_AGREES = 15.0
+_NO_AGREEMENT = 300.0  # of chi-square above the noise: then it can't be called agreement
+_UNKNOWN_SHARE = 0.6
+_UNKNOWN_COST = 3.0
+_LEFT = 0.12  # of the misfit, at which a shape is as likely the effect's as another's
+LEFT_BY_JOINT = 0.3  # likewise: contact and loss are simplified, and impacts hard to meet
+_LEFT_OF_FEW = 0.8  # likewise, where records are few
+FEW = 4  # records
+_LEFT_BESIDE = 0.5  # likewise, beside shapes that were added before
+_LEFT_SLOPE = 3.0
+_LEFT_MOST = 4.0  # nats
+_REFUTED = 40.0  # nats at most, that rows take back which an effect makes worse
+_UNSEEN = 15.0  # nats that a change over time loses where none is seen inside the records
+_SEEN = 10.0  # of chi-square, from which one is
+_SLOW_FALL = 0.08  # m/s: seals' friction has fallen by then (mm/s to cm/s in the literature)
+_UNUSUAL = 8.0  # nats for each factor of e above it
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A hypothesis: what is added, and how well it then fits."""
+
+    effects: tuple[str, ...]
+    """Ids that are added; the first is the stronger. Empty for the model as it is."""
+    variants: tuple[Variant, ...]
+    """Their shapes."""
+    coefficients: tuple[tuple[float, ...], ...]
+    """Of each variant's parts."""
+    chi2: float
+    """Sum of squared whitened misfits."""
+    log_evidence: float
+    """Nats."""
+
+
+def cost(excess: float, informative: float, tolerated: float = 0.0) -> float:
+    """Return minus two times the log likelihood of a misfit above the noise.
+
+    Up to `tolerated` below, where earlier effects' shapes may be what is left, it says nothing.
+    """
+    if excess > 0.0:
+        return informative * float(np.log1p(excess / informative))
+    return min(excess + tolerated, 0.0)
+
+
+def unusual(shape: Shape) -> float:
+    """Return the nats by which a shape is less likely than others before any measurement."""
+    over = shape.get("stribeck_velocity", 0.0) / _SLOW_FALL
+    return _UNUSUAL * float(np.log(over)) if over > 1.0 else 0.0
+
+
+def probabilities_of(
+    entries: Sequence[Entry], effects: Sequence[str], excess: float, informative: float,
+    usual: tuple[float, float],
+) -> dict[str, float]:
+    """Return the probability of every name.
+
+    The shape of an effect that is really there leaves little of what was missing. The more the
+    best one leaves, the less its fit says that it is none of the shapes that nobody wrote down.
+    """
+    chi2 = next(e.chi2 for e in entries if not e.effects)
+    logs: dict[str, list[float]] = {}
+    for e in entries:
+        if not e.effects:
+            doubt = 0.5 * float(np.clip(excess, 0.0, _NO_AGREEMENT))
+            logs[AGREES] = [e.log_evidence + _PRIOR_AGREES - doubt]
+        else:
+            logs.setdefault(e.effects[0], []).append(e.log_evidence)
+    scaled = {k: float(logsumexp(np.array(v) / _TEMPERATURE)) for k, v in logs.items()}
+    if excess > 0.0:
+        explained = 0.5 * cost(_UNKNOWN_SHARE * excess, informative)
+        scaled[UNKNOWN] = (-explained - _UNKNOWN_COST) / _TEMPERATURE
+        named = [e for e in entries if e.effects]
+        if named:
+            left = [max(e.chi2 - (chi2 - excess), 0.0) / excess for e in named]
+            doubt = min(_doubt(e, share, usual) for e, share in zip(named, left, strict=True))
+            scaled[UNKNOWN] = max(scaled[UNKNOWN], scaled[named[0].effects[0]] + doubt)
+    total = float(logsumexp(list(scaled.values())))
+    result = {k: float(np.exp(v - total)) for k, v in scaled.items()}
+    for name in (*effects, AGREES, UNKNOWN):
+        result.setdefault(name, 0.0)
+    return result
+
+
+def usual_left(rows: Sequence[RecordRows], tolerated: float) -> tuple[float, float]:
+    """Return the shares of the misfit at which a shape, or a joint, is likely not the effect's.
+
+    A shape that is really there leaves a few per cent of the misfit of many tests; one that is
+    not, but the nearest in the catalogue, a fifth and more. With a few tests a wrong shape is
+    hardly told from one that is right beside something small; nor is it where shapes that were
+    added before may be what is left.
+    """
+    if len(rows) < FEW:
+        return _LEFT_OF_FEW, _LEFT_OF_FEW
+    if tolerated > 0.0:
+        return _LEFT_BESIDE, _LEFT_BESIDE
+    return _LEFT, LEFT_BY_JOINT
+
+
+def _doubt(entry: Entry, left: float, usual: tuple[float, float]) -> float:
+    """Return the nats by which what a hypothesis leaves says that none is right."""
+    share = usual[1] if is_joint(entry.effects[0]) else usual[0]
+    return float(min(_LEFT_SLOPE * np.log(max(left, 1e-6) / share), _LEFT_MOST))
+
+
+def over_time(rows: Sequence[RecordRows], before: Array, after: Array, effect: str) -> float:
+    """Return the nats that an effect loses by what is seen to change while the records last.
+
+    What it makes worse there refutes it, however much it explains otherwise; an effect that is a
+    change over time has to show.
+    """
+    changing = np.concatenate(
+        [np.arange(r.target.size) >= (r.steady or r.target.size) for r in rows]
+    )
+    if not changing.any():
+        return 0.0
+    gain = float(np.sum(before[changing] ** 2) - np.sum(after[changing] ** 2))
+    unseen = _UNSEEN if TERMS[effect].follows == "time" and gain < _SEEN else 0.0
+    return unseen + float(np.clip(-0.5 * gain, 0.0, _REFUTED))
