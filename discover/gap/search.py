@@ -105,15 +105,17 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     rounds: list[Round] = []
     tried: set[str] = set()
     doubt, members, curves = np.zeros(len(fitted)), 0, True
-    deep = True
+    deep, weighed = True, None
     while True:
         now = rounds[-1].after if rounds else first
         present = {t.id for t in now.fit.model.terms}
         open_effects = [e for e in effects if e not in present and e not in tried]
-        left = _Open(open_effects, doubt, rounds, len(rounds) < most, curves, deep)
-        found = _next(rows, fitted, now, left)
+        if weighed is None:
+            weighed = _weighed(fitted, now.fit, open_effects, doubt)
+        left = _Open(open_effects, rounds, len(rounds) < most, curves, deep)
+        found = _next(rows, fitted, now, left, *weighed)
         if found.added is not None:
-            curves, deep = True, False
+            curves, deep, weighed = True, False, None
             gained = misfits(fitted, now.fit) - misfits(fitted, found.added.stage.fit)
             doubt = doubt + _doubt(found.added.effect) ** 2 * np.maximum(gained, 0.0)
             tried |= set(found.added.dropped)
@@ -124,13 +126,14 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         if better is None and found.waits:
             curves = False
             continue
-        if better is None and not deep and found.contest.ranked[0][0] == UNKNOWN:
+        joints = not has_joint(now.fit.model)
+        if better is None and joints and not deep and found.contest.ranked[0][0] == UNKNOWN:
             deep = True
             continue
         if better is None:
             return Search(start, refitted, tuple(rounds), found.contest, found.rejected)
         members += len(better.effects)
-        deep = False
+        deep, weighed = False, None
         before = rounds[-1].corrected
         if before is not None:
             better = replace(better, effects=(*before.effects, *better.effects))
@@ -142,8 +145,6 @@ class _Open:
     """What a round may still do."""
 
     effects: Sequence[str]
-    doubt: Array
-    """Of each record's chi-square what the shapes of what was added may be wrong by."""
     rounds: Sequence[Round]
     more: bool
     curves: bool
@@ -164,15 +165,17 @@ class _Next:
 
 
 def _next(
-    rows: Sequence[RecordRows], fitted: Sequence[RecordRows], now: Stage, left: _Open
+    rows: Sequence[RecordRows],
+    fitted: Sequence[RecordRows],
+    now: Stage,
+    left: _Open,
+    contest: Contest,
+    fits: dict[str, ModelFit],
 ) -> _Next:
     """Return the next round: the contest, and the effect that it names, added."""
     little = _within_doubt(rows, left.rounds)
-    deep = left.deep and not little
-    contest, fits = _contest(
-        fitted, now.fit, left.effects, left.doubt,
-        joints=deep and not has_joint(now.fit.model), pairs=deep and not left.rounds,
-    )
+    if left.deep and not little:
+        contest, fits = _deeper(fitted, now.fit, left, contest, fits)
     name = contest.ranked[0][0]
     if name in (AGREES, UNKNOWN) or not left.more:
         return _Next(contest)
@@ -182,8 +185,10 @@ def _next(
     other = contest.partner(name)
     if tried.rejected is not None and other is not None:
         # Of two that are missing the first alone may only trade one record's gap for another's.
-        second = _tried(rows, fitted, now, left, contest.without(name, other), None, other)
-        tried = tried if second.added is None else second
+        paired = contest.without_alone(name, other)
+        if paired.ranked[0][0] == other:
+            second = _tried(rows, fitted, now, left, paired, None, other)
+            tried = tried if second.added is None else second
     return tried
 
 
@@ -272,36 +277,36 @@ def _refused(
     return contest.without(name, AGREES) if rounds else contest
 
 
-def _contest(
-    rows: Sequence[RecordRows],
-    fit: ModelFit,
-    effects: Sequence[str],
-    doubt: Array,
-    *,
-    joints: bool,
-    pairs: bool,
+def _weighed(
+    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str], doubt: Array
 ) -> tuple[Contest, dict[str, ModelFit]]:
-    reversal = next(
-        (
-            t.shape["transition_speed"]
-            for t in (*fit.model.terms, *(t for r in rows for t in r.held))
-            if t.id == "coulomb-friction"
-        ),
-        0.0,
-    )
+    """Return the contest beside a fit, and the fits of those that lead.
+
+    `doubt` is what of each record's chi-square the shapes of what was added may be wrong by.
+    """
     beyond = misfits(rows, fit) - np.array([r.target.size for r in rows])
     tolerated = float(np.sum(np.minimum(doubt, np.maximum(beyond, 0.0))))
-    contest = run_contest(rows, fit, effects, reversal=reversal, tolerated=tolerated)
-    contest, fits = refine(rows, fit, contest, effects)
-    simulated = all(r.cycle_rows is not None for r in rows)  # a long record takes minutes
-    if joints and simulated and contest.ranked[0][0] == UNKNOWN:
+    return refine(rows, fit, run_contest(rows, fit, effects, tolerated=tolerated), effects)
+
+
+def _deeper(
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    left: _Open,
+    contest: Contest,
+    fits: dict[str, ModelFit],
+) -> tuple[Contest, dict[str, ModelFit]]:
+    """Return the contest with joints from many starts where nothing is named, and with pairs."""
+    if any(r.cycle_rows is None for r in rows):
+        return contest, fits  # a long record takes minutes
+    if contest.ranked[0][0] == UNKNOWN and not has_joint(fit.model):
         fits = every_joint(rows, fit, contest, fits)
-        contest = reweighed(rows, contest, fit, fits, effects)
+        contest = reweighed(rows, contest, fit, fits, left.effects)
     name = contest.ranked[0][0]
-    if pairs and simulated and (name == UNKNOWN or leaves_much(rows, contest, name)):
-        found = pairs_ahead(rows, contest, fits, effects)
+    if not left.rounds and (name == UNKNOWN or leaves_much(rows, contest, name)):
+        found = pairs_ahead(rows, contest, fits, left.effects)
         contest = replace(contest, entries=(*contest.entries, *found))
-        contest = reweighed(rows, contest, fit, fits, effects)
+        contest = reweighed(rows, contest, fit, fits, left.effects)
     return contest, fits
 
 

@@ -25,10 +25,11 @@ from discover.naming.evidence import (
     cost,
     over_time,
     probabilities_of,
+    share_beside,
     unusual,
     usual_left,
 )
-from discover.naming.fit import ModelFit, kind_of
+from discover.naming.fit import ModelFit, kind_of, misfits
 from discover.naming.forces import is_joint
 from discover.naming.rows import RecordRows
 from models.checks import Array
@@ -43,6 +44,8 @@ _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
 _AN_ANSWER = 0.05
 _UNEVEN = 5
+_TELLING = 4  # records, by which joints are chosen that are tried on all
+_OF_A_KIND = 6  # joints, that are
 _NEEDS = {"stribeck-friction": "coulomb-friction"}  # a fall needs a friction to fall to
 
 
@@ -83,6 +86,18 @@ class Contest:
         chances[effect] = 0.0
         return replace(self, probabilities=chances)
 
+    def without_alone(self, effect: str, other: str) -> Contest:
+        """Return the contest when adding an effect without another one turns out not to help.
+
+        What rests on both goes to the other, the rest to "unknown".
+        """
+        chances = dict(self.probabilities)
+        both = chances[effect] * share_beside(self.entries, effect, other)
+        chances[other] += both
+        chances[UNKNOWN] += chances[effect] - both
+        chances[effect] = 0.0
+        return replace(self, probabilities=chances)
+
     def partner(self, effect: str) -> str | None:
         """Return what is beside `effect` in the best pair that holds it; None without one."""
         pairs = (e.effects for e in self.entries if len(e.effects) == 2 and effect in e.effects)
@@ -102,7 +117,6 @@ def run_contest(
     fit: ModelFit,
     effects: Sequence[str],
     *,
-    reversal: float = 0.0,
     tolerated: float = 0.0,
 ) -> Contest:
     """Weigh every effect beside a fitted model.
@@ -115,15 +129,16 @@ def run_contest(
         The model, fitted to them, with what it may still change.
     effects : sequence of str
         Ids to weigh.
-    reversal : float
-        m/s over which the model's friction reverses.
     tolerated : float
         Chi-square by which the shapes of effects that were added before may be wrong.
     """
-    scales = scales_of([r.observation for r in rows], reversal)
-    terms = {t.id for r in rows[:1] for t in (*r.held, *fit.model.terms)}
+    present = [t for r in rows[:1] for t in (*r.held, *fit.model.terms)]
+    friction = (t.shape["transition_speed"] for t in present if t.id == "coulomb-friction")
+    scales = scales_of([r.observation for r in rows], next(friction, 0.0))
+    terms = {t.id for t in present}
     possible = [e for e in effects if _NEEDS.get(e, e) in terms or e not in _NEEDS]
     chosen = [v for e in possible for v in variants(e, scales) if _can_show(v, terms)]
+    chosen = _screened(rows, fit, chosen)
     informative = sum(r.informative for r in rows)
     size = fit.residual.size
     dof = size - len(fit.parameters)
@@ -162,6 +177,35 @@ def run_contest(
     usual = usual_left(rows, tolerated)
     probabilities = probabilities_of(everything, effects, chi2 - noise, informative, usual)
     return Contest(tuple(everything), probabilities, chi2 - noise, size, noise, tolerated, starts)
+
+
+def _screened(
+    rows: Sequence[RecordRows], fit: ModelFit, chosen: Sequence[Variant]
+) -> list[Variant]:
+    """Return variants without the joints that the records which tell most speak against.
+
+    Of each kind of shape the best few are left.
+    """
+    joints = [v for v in chosen if is_joint(v.effect)]
+    if len(rows) <= _TELLING or not joints:
+        return list(chosen)
+    ends = np.cumsum([r.target.size for r in rows])
+    telling = np.argsort(misfits(rows, fit))[::-1][:_TELLING]
+    seen = np.concatenate([np.arange(ends[i] - rows[i].target.size, ends[i]) for i in telling])
+    tangents = fit.tangents[:, seen]
+    target = without_span(fit.residual[None, seen], tangents)[0]
+    columns = candidate_columns([rows[i] for i in telling], fit.model, joints)
+    columns = without_span(columns, tangents)
+    along = np.maximum(columns @ target, 0.0)
+    explained = along**2 / np.maximum(np.sum(columns**2, axis=1), 1e-300)
+    kept: dict[tuple[object, ...], list[Variant]] = {}
+    for i in np.argsort(explained)[::-1]:
+        kind = joints[i].effect, kind_of(joints[i].parts[0].shape)
+        best = kept.setdefault(kind, [])
+        if len(best) < _OF_A_KIND:
+            best.append(joints[i])
+    left = {id(v) for some in kept.values() for v in some}
+    return [v for v in chosen if not is_joint(v.effect) or id(v) in left]
 
 
 def _can_show(v: Variant, terms: set[str]) -> bool:

@@ -23,6 +23,7 @@ _UNKNOWN_SHARE = 0.6
 _UNKNOWN_COST = 3.0
 _LEFT = 0.12  # of the misfit, at which a shape is as likely the effect's as another's
 LEFT_BY_JOINT = 0.3  # likewise: contact and loss are simplified, and impacts hard to meet
+_LEFT_BY_PAIR = 0.5  # of these shares: two shapes that are not there leave less than one
 _LEFT_OF_FEW = 0.8  # likewise, where records are few
 FEW = 4  # records
 _LEFT_BESIDE = 0.5  # likewise, beside shapes that were added before
@@ -100,6 +101,16 @@ def probabilities_of(
     return result
 
 
+def share_beside(entries: Sequence[Entry], effect: str, other: str) -> float:
+    """Return the share of what is said for an effect that rests on another one beside it."""
+    own = [e for e in entries if e.effects[:1] == (effect,)]
+    logs = np.array([e.log_evidence for e in own]) / _TEMPERATURE
+    beside = np.array([other in e.effects for e in own])
+    if not beside.any():
+        return 0.0
+    return float(np.exp(logsumexp(logs[beside]) - logsumexp(logs)))
+
+
 def usual_left(rows: Sequence[RecordRows], tolerated: float) -> tuple[float, float]:
     """Return the shares of the misfit at which a shape, or a joint, is likely not the effect's.
 
@@ -117,7 +128,8 @@ def usual_left(rows: Sequence[RecordRows], tolerated: float) -> tuple[float, flo
 
 def _doubt(entry: Entry, left: float, usual: tuple[float, float]) -> float:
     """Return the nats by which what a hypothesis leaves says that none is right."""
-    share = usual[1] if is_joint(entry.effects[0]) else usual[0]
+    share = usual[1] if any(is_joint(e) for e in entry.effects) else usual[0]
+    share *= 1.0 if len(entry.effects) == 1 else _LEFT_BY_PAIR
     return float(min(_LEFT_SLOPE * np.log(max(left, 1e-6) / share), _LEFT_MOST))
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from discover.naming.contest import Contest, reweighed
-from discover.naming.evidence import Entry
+from discover.naming.evidence import AGREES, Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
+from discover.naming.forces import has_joint, is_joint
 from discover.naming.restart import best_range
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import UnitRows
@@ -23,6 +24,8 @@ _ITERATIONS = 8
 _ENOUGH = 0.02
 _SPRING = 8.0  # times the play, that its flanks give under the greatest force
 _WITHIN = 60.0  # nats behind the best that adds one effect, within which another is refined
+_SURE = 0.9  # of agreement: no shape changes that
+_HOPELESS = 0.95  # of the misfit, that an added force leaves: no shape near it leaves much less
 
 
 def extended(model: ForceModel, entry: Entry, *, only_first: bool = True) -> ForceModel:
@@ -44,7 +47,12 @@ def _sensible(identifier: str, value: float) -> float:
 
 
 def refine(
-    rows: Sequence[RecordRows], fit: ModelFit, contest: Contest, effects: Sequence[str]
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    contest: Contest,
+    effects: Sequence[str],
+    *,
+    only: Collection[str] | None = None,
 ) -> tuple[Contest, dict[str, ModelFit]]:
     """Return the contest with its leading effects fitted for real, and those fits.
 
@@ -58,12 +66,18 @@ def refine(
         From `run_contest`.
     effects : sequence of str
         Ids that were weighed.
+    only : collection of str, optional
+        Ids that may be refined.
     """
     singles = [e for e in contest.entries if len(e.effects) == 1]
-    if not singles:
+    if not singles or contest.probabilities[AGREES] > _SURE:
         return contest, {}
     leading = [
-        e for e in singles[:_LEADING] if e.log_evidence > singles[0].log_evidence - _WITHIN
+        e
+        for e in singles[:_LEADING]
+        if e.log_evidence > singles[0].log_evidence - _WITHIN
+        and (only is None or e.effects[0] in only)
+        and not _hopeless(e, contest)
     ]
     units = UnitRows()
     frozen = _Frozen.of(rows, fit, units)
@@ -81,7 +95,7 @@ def refine(
             continue
         if TERMS[name].nonnegative and found.model.terms[-1].coefficient <= 0.0:
             continue
-        if name == "sensor-gain":
+        if name == "sensor-gain" and not has_joint(fit.model):
             found = best_range(rows, found)
         if is_a_spring(rows, found.model):
             passed_over.append(name)
@@ -92,6 +106,11 @@ def refine(
         entries=tuple(e for e in contest.entries if not set(passed_over) & set(e.effects)),
     )
     return reweighed(rows, contest, fit, fits, effects), fits
+
+
+def _hopeless(entry: Entry, contest: Contest) -> bool:
+    left = entry.chi2 - contest.noise
+    return left > _HOPELESS * contest.excess > 0.0 and not is_joint(entry.effects[0])
 
 
 def is_a_spring(rows: Sequence[RecordRows], model: ForceModel) -> bool:

@@ -103,13 +103,24 @@ def _best_range(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     peaks = np.sort([
         np.abs(model_force(r.observation, whole_model(r, model))).max() for r in rows
     ])
+    units = UnitRows()
+    before = units.of_model(rows, model)
+    others = [i for i, p in enumerate(fit.parameters) if p.term < len(rest)]
+    left = np.concatenate([r.target for r in rows]) - before
+    left = without_span(left[None], fit.tangents[others])[0]
+    best, most = None, 0.0
     for threshold in np.sqrt(peaks[1:] * peaks[:-1]):
         term = FittedTerm(gain.id, gain.coefficient, {**gain.shape, "threshold": threshold})
         other = ForceModel((*rest, term), fit.model.name)
-        trial = fit_model(rows, other, free_parameters(other), iterations=_RANGE_STEPS)
-        if trial.chi2 < fit.chi2:
-            fit = trial
-    return fit
+        column = units.of_model(rows, other) - before
+        column = without_span(column[None], fit.tangents[others])[0]
+        explained = float(column @ left) ** 2 / max(float(column @ column), 1e-300)
+        if explained > most:
+            best, most = other, explained
+    if best is None:
+        return fit
+    trial = fit_model(rows, best, free_parameters(best), iterations=_RANGE_STEPS, units=units)
+    return trial if trial.chi2 < fit.chi2 else fit
 
 
 def _best_start(
@@ -125,12 +136,15 @@ def _best_start(
     telling = [rows[i] for i in chosen]
     others = (*besides, *_others(joint, scales_of([r.observation for r in rows])))
     models = [ForceModel((*rest, other), fit.model.name) for other in others]
+    without = None if instead_of is None else misfits(rows, instead_of)[chosen]
     if len(models) > _SECOND_LEG:
-        models = [m for _, m in _ranked(telling[:_FIRST_LEG], models, units)[:_SECOND_LEG]]
-    starts = _ranked(telling, models, units)
-    if instead_of is not None and starts:
-        if starts[0][0] > _BY_FAR * float(np.sum(misfits(rows, instead_of)[chosen])):
+        starts = _ranked(telling[:_FIRST_LEG], models, units)
+        if without is not None and starts[0][0] > _BY_FAR * float(np.sum(without[:_FIRST_LEG])):
             return fit
+        models = [m for _, m in starts[:_SECOND_LEG]]
+    starts = _ranked(telling, models, units)
+    if without is not None and starts and starts[0][0] > _BY_FAR * float(np.sum(without)):
+        return fit
     begun = [
         fit_model(
             telling, model, free_parameters(model), iterations=_FIRST_STEPS, units=units,

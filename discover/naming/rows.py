@@ -45,6 +45,8 @@ class RecordRows:
     cycle_rows: Array | csr_array | None = None
     """(G, R) maps a force on the cycle's grid to rows, as `project` does with the same force at
     the samples; None where there is no cycle."""
+    sample_rows: Array | None = None
+    """(N, R) of `project`, where that is all it does; None where it is not one matrix."""
     steady: int | None = None
     """Number of the first rows, which a change over the record's time leaves; None: all."""
 
@@ -139,7 +141,7 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
 
     return RecordRows(
         observation, project(observation.measured), project, 8.0, held,
-        _cycle_rows(observation, whitened), 2 * count + 1,
+        _cycle_rows(observation, whitened), whitened, 2 * count + 1,
     )
 
 

@@ -14,6 +14,9 @@ from models.motion import Motion
 
 _FORCES = 4  # a record, that are remembered
 _COLUMNS = 64  # likewise
+_SHAPES = 64  # over all records, likewise
+_SAME = 1e-12  # of the greatest force
+_MOSTLY = 0.5  # of the samples, from which a force is projected whole
 
 
 def whole_model(rows: RecordRows, model: ForceModel) -> ForceModel:
@@ -26,6 +29,8 @@ class UnitRows:
 
     def __init__(self) -> None:
         self._known: dict[Hashable, Array] = {}
+        self._first: dict[tuple[int, str], tuple[Array, Array]] = {}
+        self._of_all: dict[Hashable, Array] = {}
         self._rows: dict[int, RecordRows] = {}
         self._forces: dict[int, dict[Hashable, Array]] = {}
         self._columns: dict[int, dict[Hashable, Array]] = {}
@@ -40,30 +45,59 @@ class UnitRows:
             if r.cycle_rows is not None and trial.on_cycle(fitted.term, fitted.shape):
                 self._known[key] = np.asarray(force @ r.cycle_rows)
             else:
-                self._known[key] = r.project(force)
+                self._known[key] = self._projected(r, fitted.id, force)
         return self._known[key]
+
+    def _projected(self, r: RecordRows, effect: str, force: Array) -> Array:
+        """Return the rows of a force at the samples: what differs from the first of its effect.
+
+        Another range over which friction reverses changes it at reversals only.
+        """
+        first = self._first.get((id(r), effect))
+        if first is None or r.sample_rows is None:
+            rows = r.project(force)
+            self._first[id(r), effect] = force, rows
+            return rows
+        change = force - first[0]
+        there = np.flatnonzero(np.abs(change) > _SAME * float(np.abs(force).max()))
+        if there.size > _MOSTLY * force.size:
+            return r.project(force)
+        return np.asarray(first[1] + change[there] @ r.sample_rows[there])
 
     def of_all(self, rows: Sequence[RecordRows], fitted: FittedTerm) -> Array:
         """Return the rows of several records after each other."""
-        return np.concatenate([self.of(r, fitted) for r in rows])
+        key = (*(id(r) for r in rows), *_shape_key(fitted))
+        if key not in self._of_all:
+            found = np.concatenate([self.of(r, fitted) for r in rows])
+            _keep(self._of_all, key, found, most=_SHAPES)
+        return self._of_all[key]
 
     def of_model(self, rows: Sequence[RecordRows], model: ForceModel) -> Array:
         """Return the rows of a model's force, with the terms that each record holds."""
-        return np.concatenate([self._of_record(r, model) for r in rows])
+        result = np.zeros(sum(r.target.size for r in rows))
+        for t in model.terms:
+            if t.term.acts == "force":
+                result += t.coefficient * self.of_all(rows, t)
+        end = 0
+        for r in rows:
+            begin, end = end, end + r.target.size
+            self._complete(result[begin:end], r, model)
+        return result
 
-    def _of_record(self, r: RecordRows, model: ForceModel) -> Array:
+    def _complete(self, added: Array, r: RecordRows, model: ForceModel) -> None:
+        """Complete the rows of what a model adds by what a record holds and what is changed."""
+        for t in r.held:
+            if t.term.acts == "force":
+                added += t.coefficient * self.of(r, t)
+        if all(t.term.acts == "force" for t in (*r.held, *model.terms)):
+            return
         whole = of_test(r.observation, whole_model(r, model))
         changes = [t for t in whole.terms if t.term.acts != "force"]
         if any(t.id == DELAY for t in changes) or (changes and r.cycle_rows is None):
-            return r.project(model_force(r.observation, whole))
-        result = np.zeros(r.target.size)
-        for t in whole.terms:
-            if t.term.acts == "force":
-                result += t.coefficient * self.of(r, t)
-        if changes and r.cycle_rows is not None:
+            added[:] = r.project(model_force(r.observation, whole))
+        elif changes and r.cycle_rows is not None:
             with np.errstate(over="ignore", invalid="ignore"):  # a joint that shakes itself apart
-                result += self._change(r, steady_part(whole)) @ r.cycle_rows
-        return result
+                added += self._change(r, steady_part(whole)) @ r.cycle_rows
 
     def _change(self, r: RecordRows, steady: ForceModel) -> Array:
         """Return what a joint or a sensor changes: the force before it is evaluated once."""

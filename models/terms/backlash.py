@@ -4,7 +4,8 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.joint import Joint, device_of, through_joint
+from models.terms.joint import Joint, through_joint
+from models.terms.joint_device import device_of
 from models.terms.term import ForceOf, Parameter, Shape, Term
 
 

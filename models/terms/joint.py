@@ -1,19 +1,16 @@
 """A joint in series with a device: a spring, play, or a limit of what it carries.
 
-The device behind it is a spring, and the mass and the resistance that fit the rest of its own force
-best on the motion; it is driven through the joint and stepped in time to its steady state.
+The device behind it (`device_of`) is driven through the joint and stepped in time to its steady
+state.
 """
 
-from dataclasses import dataclass, replace
-from weakref import ReferenceType, ref
+from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from scipy.optimize import nnls
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import ForceOf, unchanged
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
@@ -21,14 +18,9 @@ _SETTLED = 5e-4
 _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle within one
 _LEAST_INNER, _MOST_INNER = 4, 60
 _MOST_STEPS = 1_000_000  # of one pass: a stiffer joint is as stiff as they can follow
-_RIDGE = 1e-12
-_LEAST_DRY = 1e-6  # of the force's root mean square
 _ADDED_MASS = 1e-3  # of what would make the whole force: a damper's own time can't be stepped
 _NEWTON = 2  # steps for the speed after friction
-_SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
-_REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
 _WIDE = 3.0  # ranges of reversal, beyond which friction is whole
-_MOST_DEVICES = 128  # that are remembered
 
 
 @dataclass(frozen=True)
@@ -58,94 +50,6 @@ class Joint:
     """1 or -1 where it changes only under positive or negative force, 0 where under both."""
     fluid_only: bool = False
     """True where dry friction is beside the joint and not behind it."""
-
-
-_Known = tuple[ReferenceType[Array], ReferenceType[Motion], Array]
-_DEVICES: dict[tuple[int, int, bool], _Known] = {}
-"""What was asked for last, by force and motion: the same devices are tried behind many joints."""
-
-
-def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> Array:
-    """Return the device that fits a force best: its mass and resistances, and where they reverse.
-
-    Mass (kg), viscous (N s/m), quadratic (N s^2/m^2) and dry (N) resistance, the range of speed
-    (m/s) over which the dry one reverses, and the stiffness (N/m) of a spring beside them. None
-    but the stiffness is negative; all are zero for a force that is not finite.
-
-    Parameters
-    ----------
-    force : ndarray, shape (N,)
-        The device's force, N.
-    motion : Motion
-        That it belongs to.
-    force_of : callable, optional
-        The device: what is lost without displacement is its spring's. At one frequency nothing
-        else tells a spring from a mass.
-    """
-    key = id(force), id(motion), force_of is None
-    known = _DEVICES.get(key)
-    if known is not None and known[0]() is force and known[1]() is motion:
-        return known[2]
-    stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of)
-    place = motion.displacement - motion.displacement.mean()
-    found = np.append(_device(force - stiffness * place, motion), stiffness)
-    if len(_DEVICES) >= _MOST_DEVICES:
-        _DEVICES.pop(list(_DEVICES)[0], None)  # threads may be here too
-    _DEVICES[key] = ref(force), ref(motion), found
-    return found
-
-
-def _stiffness(force: Array, motion: Motion, force_of: ForceOf) -> float:
-    x = motion.displacement
-    added = unchanged(force_of)
-    whole = force if added is force_of else added(motion)
-    at_rest = added(replace(motion, displacement=np.zeros_like(x)))
-    place = x - x.mean()
-    slope = float((whole - at_rest) @ place) / max(float(place @ place), 1e-300)
-    return slope if np.isfinite(slope) else 0.0
-
-
-def _device(force: Array, motion: Motion) -> Array:
-    v = motion.velocity
-    top = float(np.abs(v).max())
-    if not np.all(np.isfinite(force)) or top == 0.0:
-        return np.zeros(5)
-    sought = force - force.mean()
-    plain = np.stack([motion.acceleration, v, v * np.abs(v)])
-    found, left = _fitted(plain, np.tanh(v / (_REVERSALS[:, None] * top)), sought)
-    best = int(left.argmin())
-    reversal = _REVERSALS[best] * top
-    if found[best, 3] < _LEAST_DRY * float(np.sqrt(np.mean(sought**2))):
-        return np.append(found[0, :3], (0.0, _REVERSALS[0] * top))
-    if 0 < best < left.size - 1:
-        before, at, after = left[best - 1 : best + 2]
-        shift = 0.5 * (before - after) / max(before - 2.0 * at + after, before - at, 1e-300)
-        reversal *= (_REVERSALS[1] / _REVERSALS[0]) ** shift
-        found, _ = _fitted(plain, np.tanh(v / reversal)[None], sought)
-        best = 0
-    return np.append(found[best], reversal)
-
-
-def _fitted(plain: Array, dry: Array, force: Array) -> tuple[Array, Array]:
-    """Return coefficients (T, 4), none negative, and misfits (T,) with each of T friction columns.
-
-    `plain` (3, N) are the columns that all have, `dry` (T, N) those of friction.
-    """
-    columns = np.concatenate([plain, dry])
-    scale = np.sqrt(np.einsum("ij,ij->i", columns, columns))
-    scale = np.where(scale > 0.0, scale, 1.0)
-    picked = np.array([[0, 1, 2, 3 + k] for k in range(len(dry))])
-    gram = (columns @ columns.T / np.outer(scale, scale))[picked[:, :, None], picked[:, None, :]]
-    gram += _RIDGE * np.eye(4)
-    side = (columns @ force / scale)[picked]
-    found = np.linalg.solve(gram, side[..., None])[..., 0]
-    for k in np.flatnonzero(found.min(axis=1) < 0.0):
-        factor = np.linalg.cholesky(gram[k])
-        found[k] = nnls(factor.T, np.linalg.solve(factor, side[k]))[0]
-    misfit = force @ force - np.einsum(
-        "ti,ti->t", found, 2.0 * side - np.einsum("tij,tj->ti", gram, found)
-    )
-    return found / scale[picked], misfit
 
 
 def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> Array:

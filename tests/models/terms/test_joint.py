@@ -5,7 +5,8 @@ import pytest
 
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import harmonic_motion
-from models.terms.joint import Joint, device_of, through_joint
+from models.terms.joint import Joint, through_joint
+from models.terms.joint_device import device_of
 
 MASS, VISCOUS = 200.0, 900.0
 

@@ -1,0 +1,147 @@
+"""The device behind a joint: a spring, and the mass and resistances that fit its other force."""
+
+from dataclasses import dataclass, replace
+from typing import Any, Self
+from weakref import ReferenceType, ref
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from models.checks import Array
+from models.motion import Motion
+from models.terms.term import ForceOf, unchanged
+
+_RIDGE = 1e-12
+_LEAST_DRY = 1e-6  # of the force's root mean square
+_SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
+_REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
+_MOST_KNOWN = 128  # that are remembered
+_CYCLE = 4096  # samples of a motion at most, whose columns are
+
+
+@dataclass(frozen=True)
+class _Resistances:
+    """What a device's force is made of: inertia, resistances, and one of T frictions."""
+
+    columns: Array
+    """(3 + T, N) those of acceleration, velocity and its square, then of the frictions."""
+    scale: Array
+    """(3 + T,) their sizes."""
+    gram: Array
+    """(T, 4, 4) products of the first three and each friction, over their sizes."""
+
+    @classmethod
+    def of(cls, plain: Array, dry: Array) -> Self:
+        """Return those of columns (3, N) that all have and of frictions (T, N)."""
+        columns = np.concatenate([plain, dry])
+        scale = np.sqrt(np.einsum("ij,ij->i", columns, columns))
+        scale = np.where(scale > 0.0, scale, 1.0)
+        picked = cls._picked(len(dry))
+        gram = columns @ columns.T / np.outer(scale, scale)
+        gram = gram[picked[:, :, None], picked[:, None, :]] + _RIDGE * np.eye(4)
+        return cls(columns, scale, gram)
+
+    @staticmethod
+    def _picked(frictions: int) -> NDArray[np.intp]:
+        return np.array([[0, 1, 2, 3 + k] for k in range(frictions)])
+
+    def fitted(self, force: Array) -> tuple[Array, Array]:
+        """Return coefficients (T, 4), none negative, and misfits (T,) of a force (N,) with each."""
+        picked = self._picked(len(self.gram))
+        side = (self.columns @ force / self.scale)[picked]
+        found = np.linalg.solve(self.gram, side[..., None])[..., 0]
+        for k in np.flatnonzero(found.min(axis=1) < 0.0):
+            factor = np.linalg.cholesky(self.gram[k])
+            found[k] = nnls(factor.T, np.linalg.solve(factor, side[k]))[0]
+        misfit = force @ force - np.einsum(
+            "ti,ti->t", found, 2.0 * side - np.einsum("tij,tj->ti", self.gram, found)
+        )
+        return found / self.scale[picked], misfit
+
+
+_Device = tuple[ReferenceType[Array], ReferenceType[Motion], Array]
+_DEVICES: dict[tuple[int, int, bool], _Device] = {}
+"""What was asked for last, by force and motion: the same devices are tried behind many joints."""
+_RESISTANCES: dict[int, tuple[ReferenceType[Motion], _Resistances]] = {}
+"""Likewise by motion."""
+
+
+def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> Array:
+    """Return the device that fits a force best: its mass and resistances, and where they reverse.
+
+    Mass (kg), viscous (N s/m), quadratic (N s^2/m^2) and dry (N) resistance, the range of speed
+    (m/s) over which the dry one reverses, and the stiffness (N/m) of a spring beside them. None
+    but the stiffness is negative; all are zero for a force that is not finite.
+
+    Parameters
+    ----------
+    force : ndarray, shape (N,)
+        The device's force, N.
+    motion : Motion
+        That it belongs to.
+    force_of : callable, optional
+        The device: what is lost without displacement is its spring's. At one frequency nothing
+        else tells a spring from a mass.
+    """
+    key = id(force), id(motion), force_of is None
+    known = _DEVICES.get(key)
+    if known is not None and known[0]() is force and known[1]() is motion:
+        return known[2]
+    stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of)
+    place = motion.displacement - motion.displacement.mean()
+    found = np.append(_device(force - stiffness * place, motion), stiffness)
+    _forget_oldest(_DEVICES)
+    _DEVICES[key] = ref(force), ref(motion), found
+    return found
+
+
+def _forget_oldest(known: dict[Any, Any]) -> None:
+    if len(known) >= _MOST_KNOWN:
+        known.pop(list(known)[0], None)  # threads may be here too
+
+
+def _stiffness(force: Array, motion: Motion, force_of: ForceOf) -> float:
+    x = motion.displacement
+    added = unchanged(force_of)
+    whole = force if added is force_of else added(motion)
+    at_rest = added(replace(motion, displacement=np.zeros_like(x)))
+    place = x - x.mean()
+    slope = float((whole - at_rest) @ place) / max(float(place @ place), 1e-300)
+    return slope if np.isfinite(slope) else 0.0
+
+
+def _device(force: Array, motion: Motion) -> Array:
+    v = motion.velocity
+    top = float(np.abs(v).max())
+    if not np.all(np.isfinite(force)) or top == 0.0:
+        return np.zeros(5)
+    sought = force - force.mean()
+    resistances = _resistances_of(motion)
+    found, left = resistances.fitted(sought)
+    best = int(left.argmin())
+    reversal = _REVERSALS[best] * top
+    if found[best, 3] < _LEAST_DRY * float(np.sqrt(np.mean(sought**2))):
+        return np.append(found[0, :3], (0.0, _REVERSALS[0] * top))
+    if 0 < best < left.size - 1:
+        before, at, after = left[best - 1 : best + 2]
+        shift = 0.5 * (before - after) / max(before - 2.0 * at + after, before - at, 1e-300)
+        reversal *= (_REVERSALS[1] / _REVERSALS[0]) ** shift
+        closer = _Resistances.of(resistances.columns[:3], np.tanh(v / reversal)[None])
+        found, best = closer.fitted(sought)[0], 0
+    return np.append(found[best], reversal)
+
+
+def _resistances_of(motion: Motion) -> _Resistances:
+    """Return what devices on a motion are made of, evaluated once."""
+    known = _RESISTANCES.get(id(motion))
+    if known is not None and known[0]() is motion:
+        return known[1]
+    v = motion.velocity
+    plain = np.stack([motion.acceleration, v, v * np.abs(v)])
+    dry = np.tanh(v / (_REVERSALS[:, None] * float(np.abs(v).max())))
+    found = _Resistances.of(plain, dry)
+    if v.size <= _CYCLE:
+        _forget_oldest(_RESISTANCES)
+        _RESISTANCES[id(motion)] = ref(motion), found
+    return found
