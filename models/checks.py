@@ -135,7 +135,10 @@ def nearest(text: str, choices: Iterable[str]) -> str:
     >>> nearest("frequncy", ["frequency", "file"])
     " (did you mean 'frequency'?)"
     """
-    close = difflib.get_close_matches(text.lower(), list(choices), n=1, cutoff=0.7)
+    names = list(choices)
+    close = difflib.get_close_matches(text.lower(), names, n=1, cutoff=0.7)
+    first = {n.partition("-")[0]: n for n in reversed(names)}  # "stribek": "stribeck-friction"
+    close += [first[w] for w in difflib.get_close_matches(text.lower(), first, n=1, cutoff=0.7)]
     return f" (did you mean {close[0]!r}?)" if close else ""
 
 

@@ -69,7 +69,7 @@ def gap(
     from discover.motion_gap import motion_before_and_after, require_system
     from discover.readers import read_campaign
     from discover.report.document import json_text
-    from discover.report.gap import gap_figures, gap_lines, gap_report
+    from discover.report.gap import gap_figures, gap_lines, gap_report, warning_lines
     from models.terms import TERMS, own_terms
 
     with working("Reading effects"):
@@ -90,6 +90,8 @@ def gap(
     with working(f"Comparing {len(measured.records)} records"):
         found = close_gap(measured, chosen, fixed=fixed, effects=named, seed=seed, jobs=jobs)
     document = found.to_dict()
+    if named is not None:
+        document["effects"] = list(named)
     document["findings"] += baseline_notes(
         model, found.given, device, fixed=fixed, fitted=found.fitted
     )
@@ -112,7 +114,7 @@ def gap(
         name="gap.json",
         folder=folder,
         files=files,
-        summary=gap_lines(document),
+        summary=[*gap_lines(document), *warning_lines(document)],
         as_json=as_json,
     )
     return 0

@@ -109,6 +109,8 @@ def _everywhere(model: ForceModel, device: Device) -> SegmentedModel:
 
 def _from_file(name: str, *, where: str) -> SegmentedModel:
     path = Path(name)
+    if not path.is_file() and (path.suffix or len(path.parts) > 1):
+        raise InputError("no such file", where=f"{where} {name}")
     if not path.is_file():
         raise InputError(
             "model",

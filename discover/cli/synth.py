@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Annotated
@@ -12,7 +13,8 @@ from discover.cli import options
 from discover.cli.invocation import Invocation
 from discover.cli.results import working
 from discover.report.folder import check_replaceable, write_folder
-from models.checks import InputError, number
+from discover.report.words import counted
+from models.checks import InputError
 
 _AMPLITUDES = "5,10,20"
 
@@ -119,7 +121,13 @@ def synth(
             command=invocation.repeat(seed=seed),
         )
     written = write_folder(folder, files, fresh=True)
-    typer.echo(f"{len(records)} records in {written}")
+    if grid_hz is not None and len(plan) < len(grid_hz) * len(grid_mm):
+        left_out = len(grid_hz) * len(grid_mm) - len(plan)
+        typer.echo(
+            f"{counted(left_out, 'test')} left out: beyond the rig's {1e3 * limits.stroke:g} mm,"
+            f" {limits.speed:g} m/s, {limits.acceleration:.0f} m/s^2 or {1e-3 * limits.force:g} kN."
+        )
+    typer.echo(f"{counted(len(records), 'record')} in {written}")
     return 0
 
 
@@ -137,9 +145,14 @@ def fraction(text: str, *, where: str) -> float:
     (0.03, 0.03)
     """
     plain = text.strip()
-    if plain.endswith("%"):
-        return number("size", plain[:-1].strip(), at_least=0.0, where=where) / 100.0
-    return number("size", plain, at_least=0.0, where=where)
+    percent = plain.endswith("%")
+    try:
+        size = float(plain.removesuffix("%")) / (100.0 if percent else 1.0)
+    except ValueError:
+        size = -1.0
+    if not 0.0 <= size <= (math.inf if percent else 1.0) or math.isinf(size):
+        raise InputError("size", expected="a share as 3% or 0.03", found=repr(plain), where=where)
+    return size
 
 
 def _hidden(text: str) -> tuple[str, float]:

@@ -10,6 +10,7 @@ from discover.figure_data import GapFigureData
 from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline, prepare_baseline
 from discover.gap.figures import added_to, curves, shape_of
+from discover.gap.findings import findings_of
 from discover.gap.leftover import leftover_in_words
 from discover.gap.result import CorrectedCurve, Gap, MendedTerm, NamedEffect, RecordGap
 from discover.gap.search import Round, Search, search
@@ -22,7 +23,7 @@ from discover.naming.fit import ModelFit
 from discover.naming.forces import model_force
 from discover.naming.unit_rows import whole_model
 from discover.record_checks import data_errors
-from discover.records import Campaign, Finding
+from discover.records import Campaign
 from models.checks import InputError, one_of
 from models.constitutive import Band, ForceModel, SegmentedModel
 from models.terms import TERMS
@@ -135,7 +136,8 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         last=_stated(found.last, ""),
         leave_one_out=not campaign.held_out,
         findings=(
-            *data_errors(campaign), *_findings(baseline, found, where_in_words(located), noise)
+            *data_errors(campaign),
+            *findings_of(baseline, found, rounds, where_in_words(located), noise),
         ),
         given=baseline.whole,
         model=_mended(campaign, baseline, found),
@@ -250,72 +252,3 @@ def _relative(named: NamedEffect) -> float:
     if not named.coefficient:
         return 0.0
     return (named.interval[1] - named.interval[0]) / 3.92 / abs(named.coefficient)
-
-
-def _findings(
-    baseline: Baseline, found: Search, text: str, noise: float
-) -> tuple[Finding, ...]:
-    result = [Finding("note", text)]
-    for r in baseline.rows:
-        if r.observation.phase_fitted:
-            result.append(
-                Finding(
-                    "note",
-                    "has no displacement: the motion is a pure sine of the labelled frequency and"
-                    " amplitude, its phase fitted to the force.",
-                    r.observation.file,
-                )
-            )
-    if found.refitted is not found.baseline:
-        gaps = seen_gap(baseline.rows, found.baseline), seen_gap(baseline.rows, found.refitted)
-        result.append(
-            Finding(
-                "note",
-                f"Refitting the model's own coefficients alone brings the gap from {gaps[0]:.3g} %"
-                f" to {gaps[1]:.3g} %; the rounds start from there. --fixed holds them.",
-            )
-        )
-    if found.rejected is not None:
-        result.append(
-            Finding(
-                "warning",
-                f"{found.rejected} would lower the misfit in terms of the records' noise, but not"
-                " the gap in force, and is not added: the noise differs much between records, or"
-                " the model is wrong in more than one way.",
-            )
-        )
-    for entry in found.rounds:
-        for name in entry.dropped:
-            result.append(
-                Finding("note", f"{name}, named in an earlier round, was made superfluous by"
-                        f" {entry.effect} and dropped.")
-            )
-    ended = found.last.ranked[0]
-    over = seen_gap(baseline.rows, found.final) / max(noise, 1e-300)
-    if ended[0] == AGREES and not found.rounds and over > _CLOSED_BY_SHAPES:
-        result.append(
-            Finding(
-                "warning",
-                f"The gap is {over:.1f} times the noise beside the tests' own lines, yet nothing in"
-                " them is wrong: a source that does not follow the motion (hum, a pump, drift)."
-                " Look at the force's spectrum.",
-            )
-        )
-    if found.rounds and ended[0] == AGREES and found.last.tolerated > 0.0:
-        result.append(
-            Finding(
-                "note",
-                "What is left is no more than noise and what the formulas of the added effects may"
-                " differ from the real ones by: no further effect is sought in it.",
-            )
-        )
-    if ended[0] == UNKNOWN:
-        chance = "over 0.99" if ended[1] > 0.99 else f"{ended[1]:.2f}"
-        result.append(
-            Finding(
-                "warning",
-                f"What is left is more than noise, and no effect of the catalogue explains it"
-                f" (probability {chance} that it is none of them).",
-            )
-        )
-    return tuple(result)

@@ -30,12 +30,13 @@ _JOINT_DOUBT = 0.1  # likewise of what moves the device otherwise: contact and l
 # Of one form only: they leave no doubt of shape.
 _EXACT = ("inertia", "viscous-damping", "stiffness", "force-offset", "time-delay")
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
-_NOTICED = 0.005  # of the gap, that a further effect has to close
+_NOTICED = 0.005  # of the gap, that an effect has to close
 _CLEARLY = 0.1  # of the mean square relative gap
 _MOST_MEMBERS = 4  # that are added to the curves of effects
 _CLEARER = 0.99  # of a gap, below which another kind of delay is preferred
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
 _FEWEST = 20.0  # of chi-square, likewise
+_SEVERAL = 4  # records, of which one that stands out may have more noise than was found
 
 
 @dataclass(frozen=True)
@@ -174,13 +175,17 @@ def _next(
 ) -> _Next:
     """Return the next round: the contest, and the effect that it names, added."""
     little = _within_doubt(rows, left.rounds)
+    if contest.ranked[0][0] != AGREES and not _beyond(rows, now):
+        little = little or _one_stands_out(fitted, now, contest)
     if left.deep and not little:
         contest, fits = _deeper(fitted, now.fit, left, contest, fits)
     name = contest.ranked[0][0]
-    if name in (AGREES, UNKNOWN) or not left.more:
+    if name == AGREES or (name == UNKNOWN and left.rounds) or not left.more:
         return _Next(contest)
     if little:
         return _Next(contest.without(name, AGREES))
+    if name == UNKNOWN:
+        return _Next(contest)
     tried = _tried(rows, fitted, now, left, contest, fits.get(name), name)
     other = contest.partner(name)
     if tried.rejected is not None and other is not None:
@@ -205,15 +210,15 @@ def _tried(
     mended = _mended(fitted, now.fit, contest, name, begun)
     gained = now.fit.chi2 - mended.chi2
     if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
-        return _Next(_refused(rows, now, contest, name, left.rounds))
+        return _Next(_refused(rows, now, contest, name))
     same = with_member(fitted, now.fit, [r.effect for r in left.rounds]) if left.curves else None
     if same is not None and same[1].chi2 < mended.chi2:
         return _Next(contest.without(name), waits=True)
     earlier = [r.effect for r in left.rounds if r.effect in {t.id for t in mended.model.terms}]
     mended, dropped = _without_superfluous(fitted, mended, earlier)
     after = stage(rows, mended)
-    if not _helps(rows, now, after, _NOTICED if left.rounds else 0.0):
-        return _Next(_refused(rows, now, contest, name, left.rounds), rejected=name)
+    if not _helps(rows, now, after):
+        return _Next(_refused(rows, now, contest, name), rejected=name)
     return _Next(contest, Round(name, contest, now, after, dropped))
 
 
@@ -238,15 +243,13 @@ def _doubt(name: str) -> float:
     return _JOINT_DOUBT if is_joint(name) else _SHAPE_DOUBT
 
 
-def _helps(
-    rows: Sequence[RecordRows], before: Stage, after: Stage, least: float
-) -> bool:
+def _helps(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
     """Tell whether the gap falls: pooled in N, or clearly with every record counting alike.
 
     Where more than one effect is missing, the first may close the quiet records' gaps at the cost
-    of the loud ones'. Pooled it has to fall by the share `least`.
+    of the loud ones'.
     """
-    if seen_gap(rows, after) <= (1.0 - least) * seen_gap(rows, before):
+    if seen_gap(rows, after) <= (1.0 - _NOTICED) * seen_gap(rows, before):
         return True
     was, now = (
         sum(
@@ -259,22 +262,29 @@ def _helps(
     return now < (1.0 - _CLEARLY) * was
 
 
-def _refused(
-    rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str, rounds: Sequence[Round]
-) -> Contest:
+def _refused(rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str) -> Contest:
     """Return the contest without an effect that leaves a gap beyond the noise as it is.
 
-    Where no record's gap is more than noise, it can't tell whether the effect helps; after a round
-    what is left is then too little to matter.
+    Where no record's gap is more than noise, what is left is too little to matter.
     """
-    beyond = any(
+    return contest.without(name, None if _beyond(rows, at) else AGREES)
+
+
+def _beyond(rows: Sequence[RecordRows], at: Stage) -> bool:
+    """Tell whether some record's gap is more than noise."""
+    return any(
         m.percent > _BEYOND * m.noise_percent
         for r, m in zip(rows, at.misfits, strict=True)
         if not r.observation.held_out
     )
-    if beyond:
-        return contest.without(name)
-    return contest.without(name, AGREES) if rounds else contest
+
+
+def _one_stands_out(fitted: Sequence[RecordRows], at: Stage, contest: Contest) -> bool:
+    """Tell whether the whole misfit beyond the noise is that of one record's lines."""
+    if len(fitted) < _SEVERAL:
+        return False
+    beyond = misfits(fitted, at.fit) - np.array([r.target.size for r in fitted])
+    return contest.excess < float(beyond.max())
 
 
 def _weighed(

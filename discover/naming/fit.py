@@ -19,7 +19,8 @@ from models.constitutive import WHOLE_ORDERS, FittedTerm, ForceModel
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "resampled",
                  "one_way", "from_test")
-_APART = 0.1  # of orders: a fractional one from whole ones in the same model
+_APART = 0.1  # of orders and powers: a free one from the whole ones in the same model
+_WHOLE_POWERS = {"viscous-damping": 1.0, "quadratic-damping": 2.0}
 _STEP = 1e-4  # of a value, for its tangent
 _JOINT_STEP = 1e-3  # likewise behind a joint, whose simulated cycle closes to less
 ITERATIONS = 40
@@ -185,7 +186,17 @@ def _bounded(
         if parameter.shape == "order":
             low, high = _apart(model, old, low, high)
         result[index] = float(np.clip(values[index], min(low, high), max(low, high)))
+        if fitted.id == "power-law-damping":
+            result[index] = _off_whole(model, old, float(result[index]))
     return result
+
+
+def _off_whole(model: ForceModel, old: float, power: float) -> float:
+    """Return a power clear of the whole ones that the model has besides: steps go past them."""
+    for whole in (_WHOLE_POWERS[t.id] for t in model.terms if t.id in _WHOLE_POWERS):
+        if abs(power - whole) < _APART < abs(old - whole) + 1e-9:
+            power = whole + np.copysign(_APART, old - whole)
+    return power
 
 
 def _apart(model: ForceModel, order: float, low: float, high: float) -> tuple[float, float]:

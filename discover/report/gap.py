@@ -18,10 +18,10 @@ from discover.plots.gap import (
     misfit_surface,
     telling_records,
 )
-from discover.report.environment import render
+from discover.report.environment import render, shape
 from discover.report.motion import motion_lines
 from discover.report.verdict import error_lines, named_line
-from discover.report.words import listed, percent, probability, term_name
+from discover.report.words import listed, percent, probability, short_name, significant
 
 _VERDICTS = {
     "agrees": "model and measurement agree within the noise; nothing is missing",
@@ -29,6 +29,10 @@ _VERDICTS = {
     "reduced": "the gap is smaller, but more is left than noise",
     "unexplained": "something is missing that no effect in the catalogue explains",
 }
+_BY_SHAPES = "what is left is no more than noise and what the named shapes may be wrong by"
+_NOISE = 1.15  # times the noise floor, up to which a gap is closed to it
+_UNASKED = "something is missing that none of the effects asked for explains"
+_REFITTED = 1.01  # of a gap, from which the model's own coefficients are said to have closed some
 
 
 def gap_lines(document: Mapping[str, Any]) -> list[str]:
@@ -40,19 +44,16 @@ def gap_lines(document: Mapping[str, Any]) -> list[str]:
         The search as in ``gap.json``.
     """
     verdict = str(document["verdict"])
-    names = [term_name(str(r["effect"])) for r in document["rounds"]]
+    names = [_missing(r) for r in document["rounds"]]
     lines = error_lines(document)
-    lines.append(f"Verdict: {verdict}: {_VERDICTS.get(verdict, '')}.")
+    lines.append(f"Verdict: {verdict}: {_said(document, verdict)}.")
     if names:
         lines.append(f"Missing: {listed(names)}.")
         for number, entry in enumerate(document["rounds"], start=1):
             lines.append(f"Round {number}: {_round(entry)}.")
     held_out = document.get("final_held_out_gap_percent")
     left = f"; {percent(held_out)} on records that were not fitted" if held_out is not None else ""
-    lines.append(
-        f"Gap: {percent(document['gap_percent'])} before, {percent(document['final_gap_percent'])}"
-        f" after{left}; noise floor {percent(document['noise_percent'])}."
-    )
+    lines.append(f"Gap: {_gaps(document)}{left}; noise floor {percent(document['noise_percent'])}.")
     if document.get("shape"):
         lines.append(f"Left over: {document['shape']}.")
     if document.get("motion"):
@@ -60,10 +61,50 @@ def gap_lines(document: Mapping[str, Any]) -> list[str]:
     return lines
 
 
+def _said(document: Mapping[str, Any], verdict: str) -> str:
+    over = document["final_gap_percent"] / max(document["noise_percent"], 1e-300)
+    if verdict == "closed" and over > _NOISE:
+        return _BY_SHAPES
+    if verdict == "unexplained" and document.get("effects"):
+        return f"{_UNASKED} (the gap is {significant(over, 2)} times the noise)"
+    if verdict == "unexplained":
+        return f"{_VERDICTS[verdict]} (the gap is {significant(over, 2)} times the noise)"
+    return _VERDICTS.get(verdict, "")
+
+
+def warning_lines(document: Mapping[str, Any]) -> list[str]:
+    """Return what a reader of the answer has to know, for the terminal."""
+    return [
+        f"Warning: {f['record'] + ': ' if f.get('record') else ''}{f['text']}"
+        for f in document.get("findings", ())
+        if f["level"] == "warning"
+    ]
+
+
+def _gaps(document: Mapping[str, Any]) -> str:
+    """Return the gap as the model was given, refitted, and with what was added."""
+    given, final = document["gap_percent"], document["final_gap_percent"]
+    rounds = document["rounds"]
+    begun = rounds[0]["gap_before_percent"] if rounds else final
+    parts = [f"{percent(given)} {'before' if begun * _REFITTED > given else 'as given'}"]
+    if begun * _REFITTED <= given:
+        parts.append(f"{percent(begun)} with the model's own coefficients refitted")
+    if rounds:
+        parts.append(f"{percent(final)} after")
+    return ", ".join(parts)
+
+
+def _missing(entry: Mapping[str, Any]) -> str:
+    """Return a name with what it can't be told apart from."""
+    same = [short_name(str(e)) for e in entry.get("not_distinguishable_from") or ()]
+    apart = f" (or {listed(same, last='or')}: not told apart)" if same else ""
+    return f"{short_name(str(entry['effect']))} {probability(entry['probability'])}{apart}"
+
+
 def _round(entry: Mapping[str, Any]) -> str:
-    text = f"{term_name(str(entry['effect']))} {probability(entry['probability'])}"
+    text = f"{short_name(str(entry['effect']))} {probability(entry['probability'])}"
     others = [
-        f"{term_name(str(a['effect']))} ({probability(a['probability'])})"
+        f"{short_name(str(a['effect']))} ({probability(a['probability'])})"
         for a in entry.get("alternatives", ())
         if a["effect"] != entry["effect"]
     ]
@@ -81,7 +122,7 @@ def _corrected(entry: Mapping[str, Any] | None) -> str:
         return ""
     counts = Counter(str(e) for e in entry["effects"])
     terms = [
-        f"the curve of {term_name(name)} takes {number} more {'term' if number == 1 else 'terms'}"
+        f"the curve of {short_name(name)} takes {number} more {'term' if number == 1 else 'terms'}"
         for name, number in counts.items()
     ]
     return f" ({percent(entry['gap_by_formula_percent'])} by formula; {listed(terms)})"
@@ -104,8 +145,8 @@ def gap_figures(document: Mapping[str, Any], data: GapFigureData) -> dict[str, s
     }
     for number, entry in enumerate(document["rounds"], start=1):
         drawn[f"contest-{number}"] = contest(entry, name=f"contest-{number}")
-    for shape in data.shapes:
-        drawn[f"shape-{shape.round + 1}"] = effect_shape(shape, name=f"shape-{shape.round + 1}")
+    for curve in data.shapes:
+        drawn[f"shape-{curve.round + 1}"] = effect_shape(curve, name=f"shape-{curve.round + 1}")
     for number, record in enumerate(telling_records(data), start=1):
         drawn[f"loops-{number}"] = gap_loops(record, name=f"loops-{number}")
     return {name: svg for name, svg in drawn.items() if svg is not None}
@@ -141,6 +182,7 @@ def gap_report(
             "contest": picture(f"contest-{number}"),
             "shape": picture(f"shape-{number}"),
             "text": _round(entry),
+            "shape_text": shape({"id": entry["effect"], **entry.get("parameters", {})}),
         }
         for number, entry in enumerate(document["rounds"], start=1)
     ]

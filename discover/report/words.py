@@ -31,6 +31,17 @@ def term_name(identifier: str) -> str:
     return _NAMES.get(identifier, identifier.replace("-", " "))
 
 
+def short_name(identifier: str) -> str:
+    """Return a term's id as words without its law, for lists.
+
+    Examples
+    --------
+    >>> short_name("power-law-damping")
+    'power-law damping'
+    """
+    return term_name(identifier).partition(",")[0]
+
+
 def significant(value: float | None, digits: int = 4) -> str:
     """Return `value` to `digits` significant digits, without needless zeros; "–" for none.
 

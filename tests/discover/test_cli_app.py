@@ -50,7 +50,8 @@ def test_every_verb_is_listed_with_what_it_does(capsys):
             ["synth", "out", "--device", "device-12", "--model", "ioim-laminer"],
             "got ioim-laminer (did you mean 'ioim-laminar'?)",
         ),
-        (["synth", "out", "--device", "device-12", "--model", "none.json"], "or a model.json"),
+        (["synth", "out", "--device", "device-12", "--model", "none"], "or a model.json"),
+        (["synth", "out", "--device", "device-12", "--model", "none.json"], "no such file"),
         (["synth", "out", "--device", "device-10", "--model", "sfoim"], "got device-10"),
     ],
 )

@@ -49,10 +49,13 @@ def test_identifiers_refuse_gaps_and_repeats():
     assert identifiers(None, where="--terms") is None
 
 
-def test_fraction_reads_percent_and_refuses_the_negative():
+@pytest.mark.parametrize("text", ["-1%", "5", "5N", "nan", "inf%", ""])
+def test_fraction_reads_percent_and_refuses_what_is_no_share(text):
+    """A forgotten % would hide a five-hundred-fold effect."""
     assert fraction(" 2.5 % ", where="--noise") == 0.025
-    with pytest.raises(InputError, match=r"--noise: size must be a finite number >= 0"):
-        fraction("-1%", where="--noise")
+    assert fraction("120%", where="--noise") == 1.2
+    with pytest.raises(InputError, match=r"--noise: size must be a share as 3% or 0.03, got"):
+        fraction(text, where="--noise")
 
 
 def test_the_repeating_command_keeps_a_given_seed():

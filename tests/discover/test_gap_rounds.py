@@ -1,5 +1,7 @@
 """Where the rounds of a gap search start and end."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -114,3 +116,28 @@ def test_viscous_damping_is_tried_though_friction_stands_for_it():
     found = close_gap(campaign(law, seed=1), "fit:inertia,coulomb-friction,quadratic-damping")
     assert [r.effect for r in found.rounds] == ["viscous-damping"]
     assert found.final_gap_percent < 1.1 * found.noise_percent
+
+
+def with_a_line(place, share):
+    """Return a clean campaign in which some records' force has a line at its third harmonic."""
+    clean = campaign(device, seed=3)
+    records = []
+    for i, r in enumerate(clean.records):
+        line = share * np.sqrt(2.0) * float(np.std(r.force))
+        line = line * np.sin(6.0 * np.pi * r.frequency * r.time + 1.0)
+        records.append(replace(r, force=r.force + line) if i in place else r)
+    return replace(clean, records=tuple(records))
+
+
+def test_a_line_in_one_record_within_its_noise_is_no_effect():
+    """There the noise may be more than beside the lines; in every record it is something."""
+    one = close_gap(with_a_line([2], 0.006), "fit:inertia,viscous-damping")
+    assert one.verdict == "agrees"
+    assert one.rounds == ()
+    every = close_gap(with_a_line(range(8), 0.006), "fit:inertia,viscous-damping")
+    assert every.verdict != "agrees"
+
+
+def test_a_line_far_above_the_noise_of_one_record_counts():
+    found = close_gap(with_a_line([2], 0.05), "fit:inertia,viscous-damping")
+    assert found.verdict != "agrees"

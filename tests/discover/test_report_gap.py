@@ -2,7 +2,7 @@ import pytest
 
 from discover.figure_data import GapFigureData
 from discover.plots.gap import gap_by_round
-from discover.report.gap import gap_figures, gap_lines, gap_report
+from discover.report.gap import gap_figures, gap_lines, gap_report, warning_lines
 from tests.discover.sample_gap import sample_gap_data, sample_gap_document
 from tests.discover.test_report_study import Page
 
@@ -25,7 +25,7 @@ def test_page_is_self_contained_and_carries_each_part():
         "Where the baseline misses",
         "The effect's shape",
         "395 to 409",
-        "Transition speed: 0.002",
+        "Transition speed 0.002 m/s",
         "direction of motion",
         "inerter gap rig",
     ):
@@ -35,7 +35,7 @@ def test_page_is_self_contained_and_carries_each_part():
 
 def test_lines_name_effects_with_alternatives_and_both_gaps():
     lines = [line.replace("\u202f", " ") for line in gap_lines(sample_gap_document())]
-    assert lines[1] == "Missing: Coulomb friction, sign v and force offset."
+    assert lines[1] == "Missing: Coulomb friction 93 % and force offset > 99 %."
     assert "93 %, or stribeck friction (6 %); gap 18.3 % to 2.4 %" in lines[2]
     assert lines[4] == (
         "Gap: 18.3 % before, 1.2 % after; 1.3 % on records that were not fitted; noise floor 1.1 %."
@@ -65,3 +65,28 @@ def test_the_round_says_how_far_the_formula_alone_came():
     text = " ".join(gap_lines(document)).replace("\u202f", " ")
     assert "(2.5 % by formula; the curve of asymmetric damping takes 2 more terms)" in text
     assert "by formula" in (gap_by_round(document) or "")
+
+
+def test_lines_say_what_is_not_told_apart_and_what_refitting_alone_closed():
+    document = sample_gap_document()
+    first = {**document["rounds"][0], "not_distinguishable_from": ["stribeck-friction"]}
+    document |= {"rounds": [{**first, "gap_before_percent": 8.0}], "final_gap_percent": 1.3}
+    lines = [line.replace("\u202f", " ") for line in gap_lines(document)]
+    assert "Coulomb friction 93 % (or stribeck friction: not told apart)" in lines[1]
+    assert "18.3 % as given, 8 % with the model's own coefficients refitted, 1.3 %" in lines[3]
+    assert "what the named shapes may be wrong by" in lines[0]  # 1.3 % is more than 1.1 % of noise
+
+
+def test_a_restricted_search_does_not_speak_for_the_catalogue():
+    document = sample_gap_document()
+    document |= {"rounds": [], "verdict": "unexplained", "effects": ["stiffness"]}
+    assert "none of the effects asked for explains" in gap_lines(document)[0]
+
+
+def test_warnings_stand_on_the_terminal_with_their_record():
+    document = sample_gap_document()
+    document["findings"] = [
+        {"level": "note", "text": "quiet"},
+        {"level": "warning", "text": "loud", "record": "a.csv"},
+    ]
+    assert warning_lines(document) == ["Warning: a.csv: loud"]

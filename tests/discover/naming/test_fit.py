@@ -51,6 +51,22 @@ def test_an_exponent_is_found_from_far_away(start):
     assert fit.chi2 < 1.3 * fit.residual.size
 
 
+@pytest.mark.parametrize("start", [0.8, 1.3])
+def test_a_power_beside_viscous_damping_keeps_off_it(start):
+    """Nearly the same twice, they are two huge forces whose difference is the noise's."""
+
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 300.0 * np.sign(v) * np.abs(v) ** 1.01
+
+    begin = model(
+        ("inertia", 1.0), ("viscous-damping", 1.0), ("power-law-damping", 1.0, {"exponent": start})
+    )
+    fit = fitted(rows_of(law), begin)
+    _, viscous, power = fit.model.terms
+    assert abs(power.shape["exponent"] - 1.0) > 0.0999
+    assert abs(viscous.coefficient) + abs(power.coefficient) < 4000.0
+
+
 def test_a_stop_is_found_from_a_wrong_gap_and_a_wrong_exponent():
     def law(t, x, v, a):
         return device(t, x, v, a) + 4e6 * np.sign(x) * np.maximum(np.abs(x) - 0.0091, 0.0) ** 1.5

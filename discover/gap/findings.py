@@ -1,0 +1,133 @@
+"""What a reader of a gap search's answer has to know: what was dropped, refused, or is in doubt."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from discover.gap.baseline import Baseline
+from discover.gap.result import NamedEffect
+from discover.gap.search import Search
+from discover.gap.stages import seen_gap
+from discover.naming.evidence import AGREES, FEW, UNKNOWN
+from discover.records import Finding
+
+_WORSE = 1.02  # of a gap that was not fitted, from which a round is said to raise it
+_NOT_THE_LINES = 1.5  # times the noise, from which a gap is not what the tests' lines show
+
+
+def findings_of(
+    baseline: Baseline, found: Search, rounds: Sequence[NamedEffect], text: str, noise: float
+) -> tuple[Finding, ...]:
+    """Return what a reader of a gap search's answer has to know.
+
+    Parameters
+    ----------
+    baseline : Baseline
+        Where the search began.
+    found : Search
+        The search.
+    rounds : sequence of NamedEffect
+        Its rounds as they are stated.
+    text : str
+        Where the baseline misses, in words.
+    noise : float
+        The records' noise floor, %.
+    """
+    result = [Finding("note", text)]
+    for r in baseline.rows:
+        if r.observation.phase_fitted:
+            result.append(
+                Finding(
+                    "note",
+                    "has no displacement: the motion is a pure sine of the labelled frequency and"
+                    " amplitude, its phase fitted to the force.",
+                    r.observation.file,
+                )
+            )
+    if found.refitted is not found.baseline:
+        gaps = seen_gap(baseline.rows, found.baseline), seen_gap(baseline.rows, found.refitted)
+        result.append(
+            Finding(
+                "note",
+                f"Refitting the model's own coefficients alone brings the gap from {gaps[0]:.3g} %"
+                f" to {gaps[1]:.3g} %; the rounds start from there. --fixed holds them.",
+            )
+        )
+    if found.rejected is not None:
+        result.append(
+            Finding(
+                "warning",
+                f"{found.rejected} would lower the misfit in terms of the records' noise, but not"
+                " the gap in force, and is not added: the noise differs much between records, or"
+                " the model is wrong in more than one way.",
+            )
+        )
+    for entry in found.rounds:
+        for name in entry.dropped:
+            result.append(
+                Finding("note", f"{name}, named in an earlier round, was made superfluous by"
+                        f" {entry.effect} and dropped.")
+            )
+    result += _doubts(baseline, rounds)
+    ended = found.last.ranked[0]
+    over = seen_gap(baseline.rows, found.final) / max(noise, 1e-300)
+    if ended[0] == AGREES and not found.rounds and over > _NOT_THE_LINES:
+        result.append(
+            Finding(
+                "warning",
+                f"The gap is {over:.1f} times the noise beside the tests' own lines, yet nothing in"
+                " them is wrong: a source that does not follow the motion (hum, a pump, drift)."
+                " Look at the force's spectrum.",
+            )
+        )
+    if found.rounds and ended[0] == AGREES and found.last.tolerated > 0.0:
+        result.append(
+            Finding(
+                "note",
+                "What is left is no more than noise and what the formulas of the added effects may"
+                " differ from the real ones by: no further effect is sought in it.",
+            )
+        )
+    if ended[0] == UNKNOWN:
+        chance = "over 0.99" if ended[1] > 0.99 else f"{ended[1]:.2f}"
+        result.append(
+            Finding(
+                "warning",
+                f"What is left is more than noise, and no effect of the catalogue explains it"
+                f" (probability {chance} that it is none of them).",
+            )
+        )
+    return tuple(result)
+
+
+def _doubts(baseline: Baseline, rounds: Sequence[NamedEffect]) -> list[Finding]:
+    """Return what speaks against relying on a round, though its effect lowers the misfit."""
+    result = []
+    for entry in rounds:
+        before, after = entry.unseen
+        if before is not None and after is not None and after > _WORSE * before:
+            result.append(
+                Finding(
+                    "warning",
+                    f"{entry.effect} lowers the gap of the records that are fitted, but raises that"
+                    f" of those that are not from {before:.3g} % to {after:.3g} %.",
+                )
+            )
+        if entry.interval[0] < 0.0 < entry.interval[1]:
+            result.append(
+                Finding(
+                    "warning",
+                    f"{entry.effect} is needed, but its coefficient is not told from zero: terms"
+                    " beside it, or its own shape, make up for another one.",
+                )
+            )
+    fitted = sum(not r.observation.held_out for r in baseline.rows)
+    if rounds and fitted < FEW:
+        result.append(
+            Finding(
+                "warning",
+                f"Fewer than {FEW} records were fitted: a wrong shape can't be told from a second"
+                " small effect, and the nearest entry is named.",
+            )
+        )
+    return result
