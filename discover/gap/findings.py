@@ -93,8 +93,8 @@ def findings_of(
         result.append(
             Finding(
                 "warning",
-                f"What is left is more than noise, and no effect of the catalogue explains it"
-                f" (probability {chance} that it is none of them).",
+                "What is left is more than noise, and none of the effects that were tried explains"
+                f" it (probability {chance} that it is none of them).",
             )
         )
     return tuple(result)

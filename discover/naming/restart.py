@@ -134,7 +134,9 @@ def _best_start(
     units = UnitRows()
     chosen = _telling(rows, fit if instead_of is None else instead_of)
     telling = [rows[i] for i in chosen]
-    others = (*besides, *_others(joint, scales_of([r.observation for r in rows])))
+    seeds = [ForceModel((*rest, _whole(seed)), fit.model.name) for seed in (joint, *besides)]
+    around = _ranked(telling[:_FIRST_LEG], seeds, units)[0][1].terms[-1] if besides else joint
+    others = (*besides, *_others(around, scales_of([r.observation for r in rows])))
     models = [ForceModel((*rest, other), fit.model.name) for other in others]
     without = None if instead_of is None else misfits(rows, instead_of)[chosen]
     if len(models) > _SECOND_LEG:
@@ -158,6 +160,11 @@ def _best_start(
         units=units,
     )
     return again if again.chi2 < fit.chi2 else fit
+
+
+def _whole(joint: FittedTerm) -> FittedTerm:
+    """Return a joint with all of what it changes; a spring as it is."""
+    return joint if joint.id == "series-compliance" else FittedTerm(joint.id, 1.0, joint.shape)
 
 
 def _ranked(

@@ -97,7 +97,7 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
         figure = new_figure(620, 290)
         axes = figure.add_subplot()
         axes.set_yscale("log")
-        for key, colour, label in (("gap", ACCENT, "fitted"), ("held_out", MODEL, "held out")):
+        for key, colour, label in (("gap", ACCENT, "fitted"), ("held_out", MODEL, "not fitted")):
             values = [rounds[0][f"{key}_before_percent"]]
             values += [r[f"{key}_after_percent"] for r in rounds]
             if all(v is not None for v in values):

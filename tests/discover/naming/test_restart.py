@@ -114,3 +114,23 @@ def test_a_play_far_smaller_than_what_its_flanks_give_is_a_spring(play, gap, con
     held = [replace(r, held=DEVICE) for r in play]
     assert is_a_spring(held, ForceModel((joint,))) is spring
     assert not is_a_spring(play, ForceModel(DEVICE))
+
+
+TORN = {
+    "limit": 260.0, "softness": 0.0, "contact": 400.0, "loss": 0.4,
+    "refill": 1.0, "lag": 0.0, "side": -1.0,
+}
+
+
+def test_starts_are_around_the_kind_that_fits_not_the_first_one():
+    """A straight line may lead to the wrong side at a size that means nothing."""
+    rows = through(FittedTerm("cavitation", 1.0, TORN))
+    plain = ForceModel(DEVICE)
+    without = fit_model(rows, plain, free_parameters(plain))
+    wrong = FittedTerm("cavitation", 0.07, {**TORN, "limit": 40.0, "side": 1.0})
+    stuck = fit_model(rows, ForceModel((*DEVICE, wrong)), ())
+    other = FittedTerm("cavitation", 0.05, {**TORN, "limit": 330.0, "contact": 250.0})
+    found = restarted(rows, stuck, instead_of=without, besides=(other,))
+    assert found.chi2 - found.residual.size < 0.02 * without.chi2
+    assert found.model.terms[2].shape["limit"] == pytest.approx(TORN["limit"], rel=0.03)
+    assert found.model.terms[2].shape["side"] == -1.0
