@@ -134,10 +134,12 @@ def nearest(text: str, choices: Iterable[str]) -> str:
     --------
     >>> nearest("frequncy", ["frequency", "file"])
     " (did you mean 'frequency'?)"
+    >>> nearest("stribek", ["stiffness", "stribeck-friction"])
+    " (did you mean 'stribeck-friction'?)"
     """
     names = list(choices)
     close = difflib.get_close_matches(text.lower(), names, n=1, cutoff=0.7)
-    first = {n.partition("-")[0]: n for n in reversed(names)}  # "stribek": "stribeck-friction"
+    first = {n.partition("-")[0]: n for n in reversed(names)}
     close += [first[w] for w in difflib.get_close_matches(text.lower(), first, n=1, cutoff=0.7)]
     return f" (did you mean {close[0]!r}?)" if close else ""
 

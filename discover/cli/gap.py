@@ -69,7 +69,8 @@ def gap(
     from discover.motion_gap import motion_before_and_after, require_system
     from discover.readers import read_campaign
     from discover.report.document import json_text
-    from discover.report.gap import gap_figures, gap_lines, gap_report, warning_lines
+    from discover.report.gap import gap_figures, gap_lines, gap_report
+    from discover.report.verdict import warning_lines
     from models.terms import TERMS, own_terms
 
     with working("Reading effects"):

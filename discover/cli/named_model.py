@@ -109,9 +109,9 @@ def _everywhere(model: ForceModel, device: Device) -> SegmentedModel:
 
 def _from_file(name: str, *, where: str) -> SegmentedModel:
     path = Path(name)
-    if not path.is_file() and (path.suffix or len(path.parts) > 1):
-        raise InputError("no such file", where=f"{where} {name}")
     if not path.is_file():
+        if path.suffix or len(path.parts) > 1:
+            raise InputError("no such file", where=f"{where} {name}")
         raise InputError(
             "model",
             expected="one of " + ", ".join(NAMES) + ", or a model.json",

@@ -2,10 +2,11 @@
 
 from discover.gap.baseline import Baseline, prepare_baseline, term_ids
 from discover.gap.fractional import FRACTIONAL
-from discover.gap.result import Gap, NamedEffect, RecordGap
+from discover.gap.result import CLOSED, Gap, NamedEffect, RecordGap
 from discover.gap.run import close_gap
 
 __all__ = [
+    "CLOSED",
     "FRACTIONAL",
     "Baseline",
     "Gap",

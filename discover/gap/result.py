@@ -12,6 +12,8 @@ from discover.records import Finding
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 
 Interval = tuple[float, float]
+CLOSED = 1.15
+"""Times the noise floor, up to which a gap is closed to it."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,14 @@ from discover.gap.baseline import Baseline, prepare_baseline
 from discover.gap.figures import added_to, curves, shape_of
 from discover.gap.findings import findings_of
 from discover.gap.leftover import leftover_in_words
-from discover.gap.result import CorrectedCurve, Gap, MendedTerm, NamedEffect, RecordGap
+from discover.gap.result import (
+    CLOSED,
+    CorrectedCurve,
+    Gap,
+    MendedTerm,
+    NamedEffect,
+    RecordGap,
+)
 from discover.gap.search import Round, Search, search
 from discover.gap.stages import Stage, seen_gap
 from discover.gap.where import places, surface, where_in_words
@@ -32,8 +39,7 @@ _STATED = 0.97  # of the probability that the alternatives add up to
 _LEAST_STATED = 0.02
 _MOST_STATED = 6
 _EQUAL = 0.2  # of the named effect's probability: then they can't be told apart
-_CLOSED = 1.15  # of the noise floor
-_CLOSED_BY_SHAPES = 1.5  # likewise where nothing but the shapes' own error is left
+_CLOSED_BY_SHAPES = 1.5  # of the noise, where nothing but the shapes' own error is left
 
 
 def close_gap(
@@ -149,7 +155,7 @@ def _verdict(found: Search, gap: float, noise: float) -> str:
     ended = found.last.ranked[0][0]
     if not found.rounds:
         return "agrees" if ended == AGREES else "unexplained"
-    closed = _CLOSED_BY_SHAPES if ended == AGREES else _CLOSED
+    closed = _CLOSED_BY_SHAPES if ended == AGREES else CLOSED
     return "closed" if gap <= closed * noise else "reduced"
 
 

@@ -53,8 +53,10 @@ class UnitRows:
 
         Another range over which friction reverses changes it at reversals only.
         """
+        if r.sample_rows is None:
+            return r.project(force)
         first = self._first.get((id(r), effect))
-        if first is None or r.sample_rows is None:
+        if first is None:
             rows = r.project(force)
             self._first[id(r), effect] = force, rows
             return rows

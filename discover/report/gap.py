@@ -9,6 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from discover.figure_data import GapFigureData
+from discover.gap import CLOSED
 from discover.plots.gap import (
     contest,
     effect_shape,
@@ -30,7 +31,6 @@ _VERDICTS = {
     "unexplained": "something is missing that no effect in the catalogue explains",
 }
 _BY_SHAPES = "what is left is no more than noise and what the named shapes may be wrong by"
-_NOISE = 1.15  # times the noise floor, up to which a gap is closed to it
 _UNASKED = "something is missing that none of the effects asked for explains"
 _REFITTED = 1.01  # of a gap, from which the model's own coefficients are said to have closed some
 
@@ -63,22 +63,13 @@ def gap_lines(document: Mapping[str, Any]) -> list[str]:
 
 def _said(document: Mapping[str, Any], verdict: str) -> str:
     over = document["final_gap_percent"] / max(document["noise_percent"], 1e-300)
-    if verdict == "closed" and over > _NOISE:
+    if verdict == "closed" and over > CLOSED:
         return _BY_SHAPES
-    if verdict == "unexplained" and document.get("effects"):
-        return f"{_UNASKED} (the gap is {significant(over, 2)} times the noise)"
+    said = _VERDICTS.get(verdict, "")
     if verdict == "unexplained":
-        return f"{_VERDICTS[verdict]} (the gap is {significant(over, 2)} times the noise)"
-    return _VERDICTS.get(verdict, "")
-
-
-def warning_lines(document: Mapping[str, Any]) -> list[str]:
-    """Return what a reader of the answer has to know, for the terminal."""
-    return [
-        f"Warning: {f['record'] + ': ' if f.get('record') else ''}{f['text']}"
-        for f in document.get("findings", ())
-        if f["level"] == "warning"
-    ]
+        said = _UNASKED if document.get("effects") else said
+        return f"{said} (the gap is {significant(over, 2)} times the noise)"
+    return said
 
 
 def _gaps(document: Mapping[str, Any]) -> str:

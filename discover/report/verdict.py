@@ -38,10 +38,19 @@ def verdict_lines(document: Mapping[str, Any]) -> tuple[str, str, str, str, str]
 
 def error_lines(document: Mapping[str, Any]) -> list[str]:
     """Return what is wrong with the data, which a verdict can't repair."""
+    return _finding_lines(document, "error", "Error in the data")
+
+
+def warning_lines(document: Mapping[str, Any]) -> list[str]:
+    """Return what a reader of the answer has to know, for the terminal."""
+    return _finding_lines(document, "warning", "Warning")
+
+
+def _finding_lines(document: Mapping[str, Any], level: str, name: str) -> list[str]:
     return [
-        f"Error in the data: {f['record'] + ': ' if f.get('record') else ''}{f['text']}"
+        f"{name}: {f['record'] + ': ' if f.get('record') else ''}{f['text']}"
         for f in document.get("findings", ())
-        if f["level"] == "error"
+        if f["level"] == level
     ]
 
 

@@ -23,7 +23,7 @@ TERM = Term(
     "k times the depth of contact beyond the gap, to a power (1 linear, 1.5 Hertz)",
     column,
     parameters=(
-        Parameter("gap", 0.3, 0.99, 0.8, "m", "displacement"),
+        Parameter("gap", 0.1, 0.99, 0.8, "m", "displacement"),
         Parameter("exponent", 1.0, 3.0, 1.0, ""),
         Parameter("side", -1.0, 1.0, 0.0, ""),
     ),

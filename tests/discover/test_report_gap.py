@@ -2,7 +2,8 @@ import pytest
 
 from discover.figure_data import GapFigureData
 from discover.plots.gap import gap_by_round
-from discover.report.gap import gap_figures, gap_lines, gap_report, warning_lines
+from discover.report.gap import gap_figures, gap_lines, gap_report
+from discover.report.verdict import warning_lines
 from tests.discover.sample_gap import sample_gap_data, sample_gap_document
 from tests.discover.test_report_study import Page
 

@@ -20,6 +20,12 @@ def model(*terms):
     return ForceModel(tuple(FittedTerm(*t) for t in terms))
 
 
+def with_power(start):
+    return model(
+        ("inertia", 1.0), ("viscous-damping", 1.0), ("power-law-damping", 1.0, {"exponent": start})
+    )
+
+
 def fitted(rows, start):
     return fit_model(rows, start, free_parameters(start))
 
@@ -43,10 +49,7 @@ def test_an_exponent_is_found_from_far_away(start):
     def law(t, x, v, a):
         return device(t, x, v, a) + 900.0 * np.sign(v) * np.abs(v) ** 0.6
 
-    begin = model(
-        ("inertia", 1.0), ("viscous-damping", 1.0), ("power-law-damping", 1.0, {"exponent": start})
-    )
-    fit = fitted(rows_of(law), begin)
+    fit = fitted(rows_of(law), with_power(start))
     assert fit.model.terms[-1].shape["exponent"] == pytest.approx(0.6, abs=0.03)
     assert fit.chi2 < 1.3 * fit.residual.size
 
@@ -58,10 +61,7 @@ def test_a_power_beside_viscous_damping_keeps_off_it(start):
     def law(t, x, v, a):
         return device(t, x, v, a) + 300.0 * np.sign(v) * np.abs(v) ** 1.01
 
-    begin = model(
-        ("inertia", 1.0), ("viscous-damping", 1.0), ("power-law-damping", 1.0, {"exponent": start})
-    )
-    fit = fitted(rows_of(law), begin)
+    fit = fitted(rows_of(law), with_power(start))
     _, viscous, power = fit.model.terms
     assert abs(power.shape["exponent"] - 1.0) > 0.0999
     assert abs(viscous.coefficient) + abs(power.coefficient) < 4000.0

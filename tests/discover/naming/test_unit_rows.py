@@ -48,7 +48,7 @@ def test_rows_of_a_model_are_those_of_its_terms_and_of_what_a_record_holds():
     np.testing.assert_allclose(found, expected, atol=2e-3 * float(np.abs(expected).max()))
 
 
-def test_joints_that_few_records_speak_against_are_not_among_the_best(rows, monkeypatch):
+def test_joints_that_few_records_speak_against_are_not_among_the_best(monkeypatch):
     """The best joint of the grid is the same whether all are tried on all records or not."""
 
     def law(t, x, v, a):
