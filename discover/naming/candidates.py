@@ -308,7 +308,11 @@ def _cubic(scales: Scales) -> list[Variant]:
         _one("cubic-stiffness", 1, closure=float(c * scales.displacement))
         for c in (1.05, 1.2, 1.5, 2.5)
     ]
-    return [_one("cubic-stiffness", closure=0.0), *closing]
+    levelling = [
+        _one("cubic-stiffness", 1, span=float(s * scales.displacement))
+        for s in (0.2, 0.5, 1.0, 2.5)
+    ]
+    return [_one("cubic-stiffness"), *closing, *levelling]
 
 
 _MAKERS = {

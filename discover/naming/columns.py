@@ -14,8 +14,6 @@ from models.checks import Array
 from models.constitutive import ForceModel
 from models.terms import TERMS
 
-_REVERSALS = (0.4, 2.5)
-
 
 def candidate_columns(
     rows: Sequence[RecordRows], model: ForceModel, chosen: Sequence[Variant]
@@ -48,23 +46,6 @@ def candidate_columns(
     with np.errstate(over="ignore", invalid="ignore"):
         rows_of_parts[~np.isfinite(np.sum(rows_of_parts**2, axis=1))] = 0.0
     return rows_of_parts
-
-
-def reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
-    """Return rows by which the curve along which friction reverses may differ from tanh."""
-    friction = next((t for t in model.terms if t.id == "coulomb-friction"), None)
-    size = sum(r.target.size for r in rows)
-    if friction is None or friction.shape["transition_speed"] == 0.0:
-        return np.zeros((0, size))
-    speed = friction.shape["transition_speed"]
-    blocks = []
-    for r in rows:
-        v = r.observation.motion.velocity
-        own = np.tanh(v / speed)
-        curves = [np.tanh(v / (s * speed)) - own for s in _REVERSALS]
-        curves.append(v / np.hypot(v, speed) - own)
-        blocks.append(r.project(friction.coefficient * np.stack(curves)))
-    return np.concatenate(blocks, axis=1)
 
 
 def without_span(columns: Array, tangents: Array) -> Array:

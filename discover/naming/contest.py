@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from discover.naming.candidates import Variant, scales_of, variants
-from discover.naming.columns import candidate_columns, reversal_doubt, without_span
+from discover.naming.columns import candidate_columns, without_span
 from discover.naming.evidence import (
     AGREES,
     FEW,
@@ -31,6 +31,7 @@ from discover.naming.evidence import (
 )
 from discover.naming.fit import ModelFit, kind_of, misfits
 from discover.naming.forces import is_joint
+from discover.naming.reversal import other_reversals, reversal_doubt
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.terms import TERMS
@@ -165,6 +166,7 @@ def run_contest(
         entry = _single(v, raw[span], freed[span], target, chi2, evidence)
         if entry is not None:
             entries.append(entry)
+    entries += _beside_other_friction(rows, fit, chosen, spans, raw, evidence)
     starts = _starts(entries[1:])
     best = {name: some[0] for name, some in starts.items()}
     ranked = sorted(best.values(), key=lambda e: -e.log_evidence)
@@ -243,6 +245,30 @@ def _single(
     now = chi2 - float(solution @ (freed @ target))
     value = evidence(now, len(v.parts) + v.shapes) - unusual(v.parts[0].shape)
     return Entry((v.effect,), (v,), (tuple(solution),), now, value)
+
+
+def _beside_other_friction(
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    chosen: Sequence[Variant],
+    spans: Sequence[slice],
+    raw: Array,
+    evidence: Evidence,
+) -> list[Entry]:
+    """Return fits of added forces beside friction that reverses over other ranges of speed."""
+    found = []
+    for speed, other in other_reversals(rows, fit):
+        tangents = np.concatenate([other.tangents, reversal_doubt(rows, other.model)])
+        freed = without_span(raw, tangents)
+        target = without_span(other.residual[None], tangents)[0]
+        chi2 = float(target @ target)
+        for v, span in zip(chosen, spans, strict=True):
+            if TERMS[v.effect].acts != "force":
+                continue
+            entry = _single(v, raw[span], freed[span], target, chi2, evidence)
+            if entry is not None:
+                found.append(replace(entry, reversal=speed))
+    return found
 
 
 def _pairs(
@@ -328,22 +354,32 @@ def reweighed(
     `fit` is the model as it is, `fits` with each effect.
     """
     informative = sum(r.informative for r in rows)
+    refitted = {
+        e.effects[0]: min(_left(rows, fits[e.effects[0]]), e.chi2)
+        for e in contest.entries
+        if len(e.effects) == 1 and e.effects[0] in fits
+    }
+    steady = min((c for n, c in refitted.items() if TERMS[n].follows != "time"), default=np.inf)
     entries = []
     for e in contest.entries:
         if len(e.effects) != 1 or e.effects[0] not in fits:
             entries.append(e)
             continue
-        found = fits[e.effects[0]]
-        tangents = np.concatenate([found.tangents, reversal_doubt(rows, found.model)])
-        left = without_span(found.residual[None], tangents)[0]
-        chi2 = min(float(left @ left), e.chi2)
+        found, chi2 = fits[e.effects[0]], refitted[e.effects[0]]
         spent = sum(len(v.parts) + v.shapes for v in e.variants)
         value = -0.5 * cost(chi2 - contest.noise, informative, contest.tolerated)
         value -= 0.5 * spent * float(np.log(contest.rows))
-        value -= over_time(rows, fit.residual, found.residual, e.effects[0])
+        value -= over_time(rows, fit.residual, found.residual, e.effects[0], steady - chi2)
         value -= unusual(found.model.terms[-1].shape)
         entries.append(replace(e, chi2=chi2, log_evidence=value))
     entries.sort(key=lambda e: -e.log_evidence)
     usual = usual_left(rows, contest.tolerated)
     chances = probabilities_of(entries, effects, contest.excess, informative, usual)
     return replace(contest, entries=tuple(entries), probabilities=chances)
+
+
+def _left(rows: Sequence[RecordRows], fit: ModelFit) -> float:
+    """Return the chi-square of a fit that no change of its parameters explains."""
+    tangents = np.concatenate([fit.tangents, reversal_doubt(rows, fit.model)])
+    left = without_span(fit.residual[None], tangents)[0]
+    return float(left @ left)

@@ -50,6 +50,8 @@ class Entry:
     """Sum of squared whitened misfits."""
     log_evidence: float
     """Nats."""
+    reversal: float | None = None
+    """m/s over which the model's friction reverses beside it, where not as in the model."""
 
 
 def cost(excess: float, informative: float, tolerated: float = 0.0) -> float:
@@ -133,17 +135,21 @@ def _doubt(entry: Entry, left: float, usual: tuple[float, float]) -> float:
     return float(min(_LEFT_SLOPE * np.log(max(left, 1e-6) / share), _LEFT_MOST))
 
 
-def over_time(rows: Sequence[RecordRows], before: Array, after: Array, effect: str) -> float:
+def over_time(
+    rows: Sequence[RecordRows], before: Array, after: Array, effect: str, better: float
+) -> float:
     """Return the nats that an effect loses by what is seen to change while the records last.
 
     What it makes worse there refutes it, however much it explains otherwise; an effect that is a
-    change over time has to show.
+    change over time has to show: in rows that only changes reach, or, in records that have none,
+    by how much `better` in chi-square it is than all that does not change.
     """
+    follows = TERMS[effect].follows == "time"
     changing = np.concatenate(
         [np.arange(r.target.size) >= (r.steady or r.target.size) for r in rows]
     )
     if not changing.any():
-        return 0.0
+        return _UNSEEN if follows and better < _SEEN else 0.0
     gain = float(np.sum(before[changing] ** 2) - np.sum(after[changing] ** 2))
-    unseen = _UNSEEN if TERMS[effect].follows == "time" and gain < _SEEN else 0.0
+    unseen = _UNSEEN if follows and gain < _SEEN else 0.0
     return unseen + float(np.clip(-0.5 * gain, 0.0, _REFUTED))

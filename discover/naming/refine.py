@@ -12,6 +12,7 @@ from discover.naming.evidence import AGREES, Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.forces import has_joint, is_joint
 from discover.naming.restart import best_range
+from discover.naming.reversal import with_reversal
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import UnitRows
 from models.constitutive import FittedTerm, ForceModel
@@ -30,6 +31,8 @@ _HOPELESS = 0.95  # of the misfit, that an added force leaves: no shape near it 
 
 def extended(model: ForceModel, entry: Entry, *, only_first: bool = True) -> ForceModel:
     """Return the model with an entry's effect added, at the size that the contest found."""
+    if entry.reversal is not None:
+        model = with_reversal(model, entry.reversal)
     terms = list(model.terms)
     pairs = list(zip(entry.variants, entry.coefficients, strict=True))
     for variant, values in pairs[:1] if only_first else pairs:

@@ -131,12 +131,13 @@ def _place(
 ) -> float | None:
     """Add a term to its row or curve; return the order of one with memory."""
     value, shape = fitted.coefficient, fitted.shape
-    if shape.get("closure", 0.0) > 0.0:
-        raise InputError(
-            f"closure of {fitted.id} in a simulation in time",
-            expected="0: a plain cube (harmonic balance takes any)",
-            found=f"{shape['closure']:g} m",
-        )
+    for bent in ("closure", "span"):
+        if shape.get(bent, 0.0) > 0.0:
+            raise InputError(
+                f"{bent} of {fitted.id} in a simulation in time",
+                expected="0: a plain cube (harmonic balance takes any)",
+                found=f"{shape[bent]:g} m",
+            )
     if fitted.id in _COEFFICIENTS:
         row[_COEFFICIENTS[fitted.id]] += value
     elif fitted.id == "fractional-derivative":

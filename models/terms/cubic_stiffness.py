@@ -13,20 +13,23 @@ def column(motion: Motion, shape: Shape) -> Array:
     """Return the cube of the displacement, m^3.
 
     With a `closure` L (m) above 0 it is x^3 / (1 - x^2/L^2): gas that is compressed and coils that
-    close harden faster than the cube.
+    close harden faster than the cube. With a `span` s (m) above 0 it is x^3 / (1 + x^2/s^2): a
+    wire or a strut across the motion hardens, and beyond about its length is a plain spring.
     """
     x = motion.displacement
-    closure = shape.get("closure", 0.0)
-    if closure == 0.0:
-        return np.asarray(x**3)
-    return np.asarray(x**3 / (1.0 - np.minimum((x / closure) ** 2, _MOST_CLOSED)))
+    closure, span = shape.get("closure", 0.0), shape.get("span", 0.0)
+    left = 1.0 if closure == 0.0 else 1.0 - np.minimum((x / closure) ** 2, _MOST_CLOSED)
+    return np.asarray(x**3 / (left if span == 0.0 else left + (x / span) ** 2))
 
 
 TERM = Term(
     "cubic-stiffness",
     "N/m^3",
-    "k3 times displacement cubed, over 1 - x^2/L^2 where it closes at L",
+    "k3 times displacement cubed, over 1 - x^2/L^2 where it closes, 1 + x^2/s^2 where it levels",
     column,
-    parameters=(Parameter("closure", 1.01, 10.0, 0.0, "m", "displacement", "log"),),
+    parameters=(
+        Parameter("closure", 1.01, 10.0, 0.0, "m", "displacement", "log"),
+        Parameter("span", 0.1, 10.0, 0.0, "m", "displacement", "log"),
+    ),
     mistaken_for=("end-stop", "stiffness"),
 )

@@ -417,6 +417,13 @@ def test_an_end_stop_bounces_a_free_mass_back() -> None:
     assert abs(response.energy.residual) < 1e-10
 
 
+@pytest.mark.parametrize("bend", ["closure", "span"])
+def test_a_cube_that_bends_is_refused(bend: str) -> None:
+    bent = ForceModel((FittedTerm("cubic-stiffness", 1.0, {bend: 0.02}),))
+    with pytest.raises(InputError, match=f"{bend} of cubic-stiffness .* must be 0"):
+        simulate(oscillator(1.0, 1.0, bent), step=0.1, duration=1.0)
+
+
 def test_effects_of_the_measuring_chain_move_nothing() -> None:
     plain = ForceModel((FittedTerm("viscous-damping", 0.3),))
     late = ForceModel((*plain.terms, FittedTerm("time-delay", 0.01)))

@@ -16,7 +16,7 @@ SHAPES = {
     "power-law-damping": {"exponent": 1.6},
     "fractional-derivative": {"order": 1.7},
     "coulomb-friction": {"transition_speed": 0.02},
-    "cubic-stiffness": {"closure": 0.03},
+    "cubic-stiffness": {"closure": 0.03, "span": 0.02},
     "stribeck-friction": {"stribeck_velocity": 0.05, "transition_speed": 0.004},
     "end-stop": {"gap": 0.006, "exponent": 1.5},
     "hysteresis": {"yield_displacement": 0.002},
@@ -169,6 +169,15 @@ def test_special_shapes_are_the_plain_terms():
         np.testing.assert_allclose(
             column("fractional-derivative", source, order=order), column(plain, source), atol=1e-11
         )
+
+
+def test_a_cube_that_levels_off_is_a_cube_first_and_a_spring_in_the_end():
+    source = motion_of()
+    x = source.displacement
+    for span, expected in ((100.0, x**3), (1e-7, 1e-14 * x)):
+        found = column("cubic-stiffness", source, closure=0.0, span=span)
+        far = np.abs(x) > 1e-3
+        np.testing.assert_allclose(found[far], expected[far], rtol=1e-6)
 
 
 def test_friction_over_a_transition_tends_to_the_jump():
