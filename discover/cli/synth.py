@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -109,8 +110,9 @@ def synth(
     )
     with working(f"Testing {len(plan)} points"):
         if model is None:
-            records = rig_records(tested, plan, noise=share, hidden=sizes, seed=seed)
+            records, hidden = rig_records(tested, plan, noise=share, hidden=sizes, seed=seed)
         else:
+            hidden = ()
             records = model_records(model, tested, plan, noise=share, seed=seed)
         invocation: Invocation = context.obj
         files = campaign_files(
@@ -119,6 +121,7 @@ def synth(
             limits,
             title=title or _title(device, model),
             command=invocation.repeat(seed=seed),
+            hidden=hidden,
         )
     written = write_folder(folder, files, fresh=True)
     if grid_hz is not None and len(plan) < len(grid_hz) * len(grid_mm):
@@ -127,7 +130,10 @@ def synth(
             f"{counted(left_out, 'test')} left out: beyond the rig's {1e3 * limits.stroke:g} mm,"
             f" {limits.speed:g} m/s, {limits.acceleration:.0f} m/s^2 or {1e-3 * limits.force:g} kN."
         )
-    typer.echo(f"{counted(len(records), 'record')} in {written}")
+    for what in hidden:
+        typer.echo(f"Hidden: {what}")
+    then = f"inerter check {shlex.quote(str(written))}"
+    typer.echo(f"{counted(len(records), 'record')} in {written}; next: {then}")
     return 0
 
 

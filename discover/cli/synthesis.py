@@ -14,7 +14,7 @@ from models.checks import Array
 from models.device import PRESETS, Device
 from models.flow import dean
 from models.motion import sine_motion
-from models.rig import Chain, Limits, Plan, TestPoint, measure, run
+from models.rig import Chain, Hidden, Limits, Plan, TestPoint, measure, run
 
 _MODEL_NOISE = 3  # its own stream, apart from the rig's
 _RIG_DIGITS = 7  # a hundred times finer than 16 bits
@@ -45,8 +45,8 @@ class MadeRecord:
 
 def rig_records(
     device: Device, plan: Plan, *, noise: float, hidden: Mapping[str, float], seed: int
-) -> list[MadeRecord]:
-    """Return the records that the virtual test rig measures.
+) -> tuple[list[MadeRecord], tuple[str, ...]]:
+    """Return the records that the virtual test rig measures, and what is hidden in them in words.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def rig_records(
         Makes them repeatable.
     """
     measured = run(device, plan, seed=seed, chain=Chain(noise=noise), hidden=hidden)
-    return [
+    made = [
         MadeRecord(
             r.file,
             r.time,
@@ -75,6 +75,14 @@ def rig_records(
         )
         for r, p in zip(measured, plan, strict=True)
     ]
+    return made, tuple(_truth(h) for h in measured[0].hidden)
+
+
+def _truth(hidden: Hidden) -> str:
+    effect = hidden.effect
+    said = f"{effect.id}:{effect.form}, {hidden.amount:.4g} {effect.unit}".rstrip()
+    rest = ", ".join(f"{name} {value:.4g}" for name, value in hidden.values.items())
+    return said + (f" ({rest}; SI)" if rest else "")
 
 
 def model_records(
@@ -128,7 +136,8 @@ def _coordinate(name: str, point: TestPoint, device: Device, convention: str) ->
 
 
 def campaign_files(
-    records: Sequence[MadeRecord], device: Device, limits: Limits, *, title: str, command: str
+    records: Sequence[MadeRecord], device: Device, limits: Limits, *, title: str, command: str,
+    hidden: Sequence[str] = (),
 ) -> dict[str, str]:
     """Return the campaign's files by name: ``campaign.toml`` and one CSV a record.
 
@@ -142,8 +151,11 @@ def campaign_files(
         Of the rig, stated too.
     title, command : str
         What the campaign is called, and the line that makes it again.
+    hidden : sequence of str
+        What the rig hid in the records.
     """
-    lines = [f"# Simulated, by: {command}", f"title = {_quoted(title)}", "", "[device]"]
+    lines = [f"# Simulated, by: {command}", *(f"# Hidden: {h}" for h in hidden)]
+    lines += [f"title = {_quoted(title)}", "", "[device]"]
     lines += _device_lines(device)
     lines += [
         "",

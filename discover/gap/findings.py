@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from discover.gap.baseline import Baseline
-from discover.gap.result import NamedEffect
+from discover.gap.result import CLOSED, NamedEffect
 from discover.gap.search import Search
-from discover.gap.stages import seen_gap
+from discover.gap.stages import Stage, sample_misfit, seen_gap
 from discover.naming.evidence import AGREES, FEW, UNKNOWN
+from discover.naming.rows import RecordRows
 from discover.records import Finding
 
 _WORSE = 1.02  # of a gap that was not fitted, from which a round is said to raise it
+_NOISY = 20.0  # percent of a record's force
+_SINGLE = 0.01  # of a record's samples
+_MOST = 0.5  # of what is left
 _NOT_THE_LINES = 1.5  # times the noise, from which a gap is not what the tests' lines show
 
 
@@ -69,6 +75,8 @@ def findings_of(
                         f" {entry.effect} and dropped.")
             )
     result += _doubts(baseline, rounds)
+    result += _noisy(baseline.rows)
+    result += _spikes(baseline.rows, found.final, noise)
     ended = found.last.ranked[0]
     over = seen_gap(baseline.rows, found.final) / max(noise, 1e-300)
     if ended[0] == AGREES and not found.rounds and over > _NOT_THE_LINES:
@@ -131,3 +139,48 @@ def _doubts(baseline: Baseline, rounds: Sequence[NamedEffect]) -> list[Finding]:
             )
         )
     return result
+
+
+def _noisy(rows: Sequence[RecordRows]) -> list[Finding]:
+    """Return what can't be judged because the force does not repeat."""
+    fitted = [r.observation for r in rows if not r.observation.held_out]
+    levels = [
+        100.0 * float(np.sqrt(sum(w.share * w.noise_power for w in o.windows)))
+        / max(float(np.sqrt(np.mean(o.measured**2))), 1e-300)
+        for o in fitted
+    ]
+    count = sum(level > _NOISY for level in levels)
+    if not count:
+        return []
+    return [
+        Finding(
+            "warning",
+            f"In {count} of {len(levels)} records more than {_NOISY:g} % of the force counts as"
+            f" noise (up to {max(levels):.0f} %): it does not repeat from cycle to cycle. What"
+            " rattles, chatters or slips at random is in it, and is not judged here. Look at the"
+            " raw force, and sample faster.",
+        )
+    ]
+
+
+def _spikes(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding]:
+    """Return that most of what is left is in single samples, where it is."""
+    if seen_gap(rows, at) <= CLOSED * noise:
+        return []
+    sines = [r for r in rows if not r.observation.held_out and r.observation.kind == "sine"]
+    left = [sample_misfit(r, at.fit.model) ** 2 for r in sines]
+    if not left:
+        return []
+    most = sum(float(np.sort(s)[-max(1, round(_SINGLE * s.size)) :].sum()) for s in left)
+    share = most / max(sum(float(s.sum()) for s in left), 1e-300)
+    if share < _MOST:
+        return []
+    slowest = min(1.0 / r.observation.motion.step for r in sines)
+    return [
+        Finding(
+            "warning",
+            f"{100.0 * share:.0f} % of what is left is in {100.0 * _SINGLE:g} % of each record's"
+            " samples: impacts or steps that last no longer than a sample. No model can be judged"
+            f" by them; sample faster (the slowest record has {slowest:.3g} Hz).",
+        )
+    ]

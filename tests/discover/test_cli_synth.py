@@ -1,3 +1,4 @@
+import re
 import tomllib
 
 import numpy as np
@@ -19,7 +20,9 @@ def columns(folder, name):
 
 def test_campaign_states_device_limits_and_records(tmp_path, capsys):
     assert synth(tmp_path / "rig", "--held-out", "1", "--title", 'A "quoted" title') == 0
-    assert capsys.readouterr().out == f"2 records in {tmp_path / 'rig'}\n"
+    assert capsys.readouterr().out == (
+        f"2 records in {tmp_path / 'rig'}; next: inerter check {tmp_path / 'rig'}\n"
+    )
     table = tomllib.loads((tmp_path / "rig" / "campaign.toml").read_text())
     assert table["title"] == 'A "quoted" title'
     assert table["device"] == {"preset": "device-12"}
@@ -74,15 +77,19 @@ def test_sfoim_changes_its_order_across_the_boundary(tmp_path):
     assert phases == pytest.approx([0.48, 1.89], abs=5e-3)
 
 
-def test_a_hidden_effect_changes_the_force_by_its_size(tmp_path):
+def test_a_hidden_effect_changes_the_force_by_its_size_and_is_told(tmp_path, capsys):
     synth(tmp_path / "plain", "--noise", "0")
     synth(tmp_path / "hidden", "--noise", "0", "--hide", "stiffness=10%")
-    change, total = 0.0, 0.0
+    change, total, stroke = 0.0, 0.0, 0.0
     for name in ("0.5hz-5mm.csv", "2hz-5mm.csv"):
         plain, hidden = (columns(tmp_path / n, name)[2] for n in ("plain", "hidden"))
         change += np.sum((hidden - plain) ** 2)
         total += np.sum(plain**2)
+        stroke += np.sum(columns(tmp_path / "plain", name)[1] ** 2)
     assert np.sqrt(change / total) == pytest.approx(0.10, rel=0.02)
+    told = re.search(r"Hidden: stiffness:spring, (\S+) N/m", capsys.readouterr().out)
+    assert told[0] in (tmp_path / "hidden" / "campaign.toml").read_text()
+    assert float(told[1]) == pytest.approx(1e6 * np.sqrt(change / stroke), rel=0.02)  # kN, mm
 
 
 def test_a_folder_with_anything_in_it_is_refused(tmp_path, capsys):

@@ -63,3 +63,29 @@ def test_few_records_are_told(count, warned):
     found = close_gap(few, MODEL, effects=["coulomb-friction"])
     assert found.rounds
     assert any("Fewer than 4" in text for text in warnings(found.findings)) is warned
+
+
+def test_a_force_that_does_not_repeat_is_told():
+    quiet = close_gap(campaign(device, noise=0.1), MODEL, effects=["stiffness"])
+    assert not any("does not repeat" in text for text in warnings(quiet.findings))
+    loud = close_gap(campaign(device, noise=0.4), MODEL, effects=["stiffness"])
+    (told,) = [text for text in warnings(loud.findings) if "does not repeat" in text]
+    assert "In 8 of 8 records" in told
+
+
+def with_a_spike(share):
+    """Return a device that is hit once a cycle, for a share of it."""
+    def law(t, x, v, a):
+        near = np.abs(v - 0.5 * v.max()) < share * v.max()
+        return device(t, x, v, a) + 30.0 * np.abs(a).max() * (near & (x > 0.0))
+
+    return law
+
+
+@pytest.mark.parametrize(("share", "warned"), [(0.01, True), (0.15, False)])
+def test_what_is_left_in_single_samples_is_told(share, warned):
+    """A blow of one sample can't be judged; one that lasts a thirtieth of the cycle can."""
+    found = close_gap(campaign(with_a_spike(share)), MODEL, effects=["stiffness"])
+    assert found.final_gap_percent > 1.2 * found.noise_percent
+    told = [text for text in warnings(found.findings) if "no longer than a sample" in text]
+    assert bool(told) is warned
