@@ -166,7 +166,8 @@ def run_contest(
         entry = _single(v, raw[span], freed[span], target, chi2, evidence)
         if entry is not None:
             entries.append(entry)
-    entries += _beside_other_friction(rows, fit, chosen, spans, raw, evidence)
+    if chi2 > noise:
+        entries += _beside_other_friction(rows, fit, chosen, spans, raw, entries, evidence)
     starts = _starts(entries[1:])
     best = {name: some[0] for name, some in starts.items()}
     ranked = sorted(best.values(), key=lambda e: -e.log_evidence)
@@ -253,17 +254,25 @@ def _beside_other_friction(
     chosen: Sequence[Variant],
     spans: Sequence[slice],
     raw: Array,
+    entries: Sequence[Entry],
     evidence: Evidence,
 ) -> list[Entry]:
-    """Return fits of added forces beside friction that reverses over other ranges of speed."""
+    """Return added forces that fit better beside friction that reverses over other speeds."""
+    least: dict[str, float] = {}
+    for e in entries[1:]:
+        least[e.effects[0]] = min(e.chi2, least.get(e.effects[0], np.inf))
+    forces = [i for i, v in enumerate(chosen) if TERMS[v.effect].acts == "force"]
     found = []
     for speed, other in other_reversals(rows, fit):
         tangents = np.concatenate([other.tangents, reversal_doubt(rows, other.model)])
-        freed = without_span(raw, tangents)
         target = without_span(other.residual[None], tangents)[0]
         chi2 = float(target @ target)
-        for v, span in zip(chosen, spans, strict=True):
-            if TERMS[v.effect].acts != "force":
+        freed = without_span(raw, tangents)
+        along, power = freed @ target, np.maximum(np.sum(freed**2, axis=1), 1e-300)
+        for i in forces:
+            v, span = chosen[i], spans[i]
+            single = chi2 - float(along[span.start] ** 2 / power[span.start])
+            if len(v.parts) == 1 and single >= least.get(v.effect, np.inf):
                 continue
             entry = _single(v, raw[span], freed[span], target, chi2, evidence)
             if entry is not None:
