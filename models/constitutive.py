@@ -224,6 +224,8 @@ class SegmentedModel:
     """Needed for the Dean number; optional otherwise."""
     name: str = ""
     """For legends and tables."""
+    added: tuple[str, ...] = ()
+    """Ids of the last terms of every band, where a search for missing effects added them."""
 
     def at(self, coordinate: float) -> ForceModel:
         """Return the model of the band that holds `coordinate`."""
@@ -248,13 +250,21 @@ class SegmentedModel:
                 for b in self.bands
             ],
         }
+        if self.added:
+            result["added"] = list(self.added)
         if self.device is not None:
             result["device"] = self.device.to_dict()
         return result
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], *, where: str = "") -> SegmentedModel:
-        """Read what `to_dict` wrote."""
+        """Read what `to_dict` wrote.
+
+        Raises
+        ------
+        InputError
+            For what is no such document.
+        """
         if not isinstance(data.get("bands"), Sequence) or not data["bands"]:
             raise InputError("bands", expected="a list of bands", found="none", where=where)
         device = Device.from_dict(data["device"]) if data.get("device") else None
@@ -264,7 +274,21 @@ class SegmentedModel:
         )
         coordinate = str(data["bands"][0].get("coordinate", "speed"))
         convention = str(data.get("convention", "paper"))
-        return cls(bands, coordinate, convention, device, str(data.get("name", "")))
+        added = _added(data.get("added", []), bands, where)
+        return cls(bands, coordinate, convention, device, str(data.get("name", "")), added)
+
+
+def _added(ids: Any, bands: Sequence[Band], where: str) -> tuple[str, ...]:
+    if not isinstance(ids, list):
+        raise InputError("added", expected="a list of ids", found=repr(ids), where=where)
+    for band in bands:
+        last = [t.id for t in band.model.terms][len(band.model.terms) - len(ids) :]
+        if last != ids:
+            raise InputError(
+                "added", expected="the ids of the last terms of every band", found=repr(ids),
+                where=where,
+            )
+    return tuple(ids)
 
 
 def _friction(device: Device, friction: float | None) -> float:

@@ -37,6 +37,8 @@ class Baseline:
     """True where its coefficients were fitted first."""
     fixed: bool
     """True where they are held."""
+    added: tuple[str, ...] = ()
+    """Ids of its last terms, where an earlier search added them."""
 
     @property
     def terms(self) -> tuple[FittedTerm, ...]:
@@ -143,15 +145,17 @@ def prepare_baseline(
             return Baseline(tuple(rows), fitted, fitted, fitted=True, fixed=False)
         held = tuple(record_rows(o, held=fitted.terms) for o in observations)
         return Baseline(held, ForceModel(()), fitted, fitted=True, fixed=True)
+    added = model.added if isinstance(model, SegmentedModel) else ()
     if isinstance(model, SegmentedModel) and len(model.bands) == 1:
         model = ForceModel(model.bands[0].model.terms, model.name)
     if isinstance(model, ForceModel):
         terms = model.terms if fixed else ()
         rows = [record_rows(o, held=terms) for o in observations]
         free = ForceModel(()) if fixed else model
-        return Baseline(tuple(rows), free, model, fitted=False, fixed=fixed)
+        return Baseline(tuple(rows), free, model, fitted=False, fixed=fixed, added=added)
     rows = [record_rows(o, held=model.at(_coordinate(o, model)).terms) for o in observations]
-    return Baseline(tuple(rows), ForceModel(()), model, fitted=fitted_first, fixed=True)
+    free = ForceModel(())
+    return Baseline(tuple(rows), free, model, fitted=fitted_first, fixed=True, added=added)
 
 
 def _coordinate(observation: Observation, model: SegmentedModel) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -138,4 +139,5 @@ def added_to(whole: SegmentedModel, terms: Sequence[FittedTerm]) -> SegmentedMod
         type(b)(b.lower, b.upper, ForceModel((*b.model.terms, *terms), b.model.name))
         for b in whole.bands
     )
-    return SegmentedModel(bands, whole.coordinate, whole.convention, whole.device, whole.name)
+    added = (*whole.added, *(t.id for t in terms))
+    return replace(whole, bands=bands, added=added)

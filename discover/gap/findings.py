@@ -79,7 +79,8 @@ def findings_of(
     result += _spikes(baseline.rows, found.final, noise)
     ended = found.last.ranked[0]
     over = seen_gap(baseline.rows, found.final) / max(noise, 1e-300)
-    if ended[0] == AGREES and not found.rounds and over > _NOT_THE_LINES:
+    by_shapes = found.last.tolerated > 0.0
+    if ended[0] == AGREES and not found.rounds and not by_shapes and over > _NOT_THE_LINES:
         result.append(
             Finding(
                 "warning",
@@ -88,7 +89,7 @@ def findings_of(
                 " Look at the force's spectrum.",
             )
         )
-    if found.rounds and ended[0] == AGREES and found.last.tolerated > 0.0:
+    if ended[0] == AGREES and by_shapes:
         result.append(
             Finding(
                 "note",

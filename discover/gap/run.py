@@ -107,7 +107,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
     located = places(rows, start.fit.model)
     left = places(rows, final.fit.model)
     final_gap = seen_gap(baseline.rows, final)
-    verdict = _verdict(found, final_gap, noise)
+    verdict = _verdict(baseline, found, final_gap, noise)
     unexplained = float(np.sqrt(max(final_gap**2 - noise**2, 0.0)))
     shape = ""
     if verdict not in ("agrees", "closed"):
@@ -151,10 +151,12 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
     )
 
 
-def _verdict(found: Search, gap: float, noise: float) -> str:
+def _verdict(baseline: Baseline, found: Search, gap: float, noise: float) -> str:
+    """Return the verdict; of effects that were added before as of those that are added now."""
     ended = found.last.ranked[0][0]
     if not found.rounds:
-        return "agrees" if ended == AGREES else "unexplained"
+        most = _CLOSED_BY_SHAPES * noise if baseline.added else np.inf
+        return "agrees" if ended == AGREES and gap <= most else "unexplained"
     closed = _CLOSED_BY_SHAPES if ended == AGREES else CLOSED
     return "closed" if gap <= closed * noise else "reduced"
 
@@ -226,8 +228,10 @@ def _mended(campaign: Campaign, baseline: Baseline, found: Search) -> SegmentedM
         return added_to(baseline.whole, terms)
     held = baseline.terms if baseline.fixed else ()
     model = ForceModel((*held, *terms), "mended")
+    new = tuple(t.id for t in terms[len(baseline.model.terms) :])
     return SegmentedModel(
-        (Band(None, None, model),), "speed", "paper", campaign.device, "mended"
+        (Band(None, None, model),), "speed", "paper", campaign.device, "mended",
+        (*baseline.added, *new),
     )
 
 

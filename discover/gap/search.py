@@ -10,6 +10,7 @@ import numpy as np
 from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
+from discover.gap.doubt import Doubt, doubt_of_added, share_of, within_doubt
 from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
 from discover.naming.ahead import every_joint, pairs_ahead
 from discover.naming.contest import Contest, leaves_much, reweighed, run_contest
@@ -25,10 +26,6 @@ from models.constitutive import FittedTerm, ForceModel
 MOST_ROUNDS = 6
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
-_SHAPE_DOUBT = 0.045  # of an effect's amplitude: no formula follows a measured shape closer
-_JOINT_DOUBT = 0.1  # likewise of what moves the device otherwise: contact and loss are simplified
-# Of one form only: they leave no doubt of shape.
-_EXACT = ("inertia", "viscous-damping", "stiffness", "force-offset", "time-delay")
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
 _NOTICED = 0.005  # of the gap, that an effect has to close
 _CLEARLY = 0.1  # of the mean square relative gap
@@ -105,7 +102,8 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     first = refitted if moved else replace(start, fit=fit)
     rounds: list[Round] = []
     tried: set[str] = set()
-    doubt, members, curves = np.zeros(len(fitted)), 0, True
+    given = doubt_of_added(baseline, fit)
+    doubt, members, curves = given.by_record, 0, True
     deep, weighed = True, None
     while True:
         now = rounds[-1].after if rounds else first
@@ -113,12 +111,12 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         open_effects = [e for e in effects if e not in present and e not in tried]
         if weighed is None:
             weighed = _weighed(fitted, now.fit, open_effects, doubt)
-        left = _Open(open_effects, rounds, len(rounds) < most, curves, deep)
+        left = _Open(open_effects, rounds, len(rounds) < most, curves, deep, given)
         found = _next(rows, fitted, now, left, *weighed)
         if found.added is not None:
             curves, deep, weighed = True, False, None
             gained = misfits(fitted, now.fit) - misfits(fitted, found.added.stage.fit)
-            doubt = doubt + _doubt(found.added.effect) ** 2 * np.maximum(gained, 0.0)
+            doubt = doubt + share_of(found.added.effect) ** 2 * np.maximum(gained, 0.0)
             tried |= set(found.added.dropped)
             rounds.append(found.added)
             continue
@@ -152,6 +150,8 @@ class _Open:
     """Whether the curves of what was added may explain more than a further effect."""
     deep: bool
     """Whether joints and pairs are searched before what is left is called unknown."""
+    given: Doubt
+    """Of effects that the model had been given by an earlier search."""
 
 
 @dataclass(frozen=True)
@@ -174,13 +174,15 @@ def _next(
     fits: dict[str, ModelFit],
 ) -> _Next:
     """Return the next round: the contest, and the effect that it names, added."""
-    little = _within_doubt(rows, left.rounds)
+    done = [(r.effect, r.before, r.after) for r in left.rounds]
+    doubtful = bool(done) or left.given.square > 0.0
+    little = doubtful and within_doubt(rows, now, left.given, done)
     if contest.ranked[0][0] != AGREES and not _beyond(rows, now):
         little = little or _one_stands_out(fitted, now, contest)
     if left.deep and not little:
         contest, fits = _deeper(fitted, now.fit, left, contest, fits)
     name = contest.ranked[0][0]
-    if name == AGREES or (name == UNKNOWN and left.rounds) or not left.more:
+    if name == AGREES or (name == UNKNOWN and doubtful) or not left.more:
         return _Next(contest)
     if little:
         return _Next(contest.without(name, AGREES))
@@ -220,27 +222,6 @@ def _tried(
     if not _helps(rows, now, after):
         return _Next(_refused(rows, now, contest, name), rejected=name)
     return _Next(contest, Round(name, contest, now, after, dropped))
-
-
-def _within_doubt(rows: Sequence[RecordRows], rounds: Sequence[Round]) -> bool:
-    """Tell whether what is left is no more than the shapes of what was added may be wrong by."""
-    if not rounds:
-        return False
-    now = rounds[-1].after
-    seen = [m for r, m in zip(rows, now.misfits, strict=True) if not r.observation.held_out]
-    left = seen_gap(rows, now) ** 2 - pooled(seen, noise=True) ** 2
-    tolerated = sum(
-        _doubt(r.effect) ** 2 * (seen_gap(rows, r.before) ** 2 - seen_gap(rows, r.after) ** 2)
-        for r in rounds
-    )
-    return left < tolerated
-
-
-def _doubt(name: str) -> float:
-    """Return the share of an effect's amplitude by which its shape may be wrong."""
-    if name in _EXACT:
-        return 0.0
-    return _JOINT_DOUBT if is_joint(name) else _SHAPE_DOUBT
 
 
 def _helps(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:

@@ -31,6 +31,7 @@ _VERDICTS = {
     "unexplained": "something is missing that no effect in the catalogue explains",
 }
 _BY_SHAPES = "what is left is no more than noise and what the named shapes may be wrong by"
+_NOT_SHOWN = "nothing is missing that these tests would show"
 _UNASKED = "something is missing that none of the effects asked for explains"
 _REFITTED = 1.01  # of a gap, from which the model's own coefficients are said to have closed some
 
@@ -65,6 +66,8 @@ def _said(document: Mapping[str, Any], verdict: str) -> str:
     over = document["final_gap_percent"] / max(document["noise_percent"], 1e-300)
     if verdict == "closed" and over > CLOSED:
         return _BY_SHAPES
+    if verdict == "agrees" and over > CLOSED:
+        return f"{_NOT_SHOWN} (the gap is {significant(over, 2)} times the noise; see the notes)"
     said = _VERDICTS.get(verdict, "")
     if verdict == "unexplained":
         said = _UNASKED if document.get("effects") else said
