@@ -190,6 +190,7 @@ def motion_before_and_after(campaign: Campaign, before: Model, after: Model) -> 
 
 
 def _one(model: Model, record: Record, system: CarriedSystem) -> RecordMotion:
+    record = record.even  # a simulation in time has equal steps
     observation = observe(record)
     usable = observation.usable
     time = record.time[usable]

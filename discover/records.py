@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
 
 from models.checks import Array, InputError
 from models.device import Device
 
+GAP = 1.5
+"""Times the usual step, from which a step is a gap in the record."""
+
 _NO_INPUTS: Mapping[str, Array] = MappingProxyType({})
+_EVEN = 1e-3  # of a step: what times may be off the grid
+_COLUMNS = ("force", "displacement", "velocity", "acceleration", "temperature")
 
 
 @dataclass(frozen=True)
@@ -34,7 +43,11 @@ class Finding:
 
 @dataclass(frozen=True)
 class Record:
-    """One measured record, in SI units, uniformly sampled where it has a displacement."""
+    """One measured record, in SI units, without gaps where it has a displacement.
+
+    Times may jitter: a sine test is fitted at the times at which it was measured. What needs equal
+    steps takes `even`.
+    """
 
     file: str
     """Name as in ``campaign.toml``."""
@@ -59,12 +72,12 @@ class Record:
     held_out: bool = False
     """Never fitted, only predicted."""
     uniform: bool = True
-    """False only for a digitised force curve."""
+    """False only for a digitised force curve, whose points are far from evenly spaced."""
 
     def __post_init__(self) -> None:
-        """Reject columns of unequal length and freeze the arrays."""
+        """Reject columns of unequal length and times with gaps, and freeze the arrays."""
         size = self.time.size
-        for name in ("time", "force", "displacement", "velocity", "acceleration", "temperature"):
+        for name in ("time", *_COLUMNS):
             column = getattr(self, name)
             if column is None:
                 continue
@@ -73,11 +86,48 @@ class Record:
                     name, expected=f"of shape ({size},)", found=f"{column.shape}", where=self.file
                 )
             column.flags.writeable = False
+        if self.uniform and self.displacement is not None and size > 2:
+            steps = np.diff(self.time)
+            if not (steps.min() > 0.0 and steps.max() <= GAP * np.median(steps)):
+                raise InputError(
+                    "time", expected="rising, without gaps", where=self.file,
+                    found=f"steps of {steps.min():.6g} to {steps.max():.6g} s",
+                )
+
+    @cached_property
+    def even(self) -> Record:
+        """The record in equal steps: itself, or by a cubic spline through its samples."""
+        grid = np.linspace(self.time[0], self.time[-1], self.time.size)
+        if not self.uniform or np.abs(self.time - grid).max() <= _EVEN * self.step:
+            return self
+        columns = {n: getattr(self, n) for n in _COLUMNS if getattr(self, n) is not None}
+        return self.sampled(grid, on_grid(self.time, {**columns, **self.inputs}, grid))
+
+    def sampled(self, time: Array, columns: Mapping[str, Array]) -> Record:
+        """Return the record with other samples: of its force and whatever else it has."""
+        found = {n: columns[n] if getattr(self, n) is not None else None for n in _COLUMNS}
+        return replace(
+            self,
+            time=time,
+            force=columns["force"],
+            displacement=found["displacement"],
+            velocity=found["velocity"],
+            acceleration=found["acceleration"],
+            temperature=found["temperature"],
+            inputs={name: columns[name] for name in self.inputs},
+        )
 
     @property
     def step(self) -> float:
         """Sampling interval, s (the mean one where not uniform)."""
         return float((self.time[-1] - self.time[0]) / (self.time.size - 1))
+
+
+def on_grid(time: Array, columns: Mapping[str, Array], grid: Array) -> dict[str, Array]:
+    """Return columns (N,) at other times (M,), by cubic splines through their samples."""
+    names = list(columns)
+    table = CubicSpline(time, np.column_stack([columns[name] for name in names]))(grid)
+    return {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(names)}
 
 
 @dataclass(frozen=True)

@@ -44,6 +44,9 @@ def observe(record: Record) -> Observation:
         coefficients = None if kind.sine is None else kind.sine.coefficients
         noise = 0.0 if kind.sine is None else kind.sine.noise_rms
         return observe_sine(record, kind.usable, frequency, coefficients, noise)
+    if record.even is not record:
+        record = record.even
+        kind = classify(record)
     repeats = (kind.cycles or 0.0) >= _FEWEST_PERIODS
     if kind.kind == "periodic" and kind.period is not None and repeats:
         return observe_periodic(record, kind.usable, round(kind.period / record.step))

@@ -12,6 +12,7 @@ from discover.readers.consistency import derivative_agreement
 from discover.readers.labels import check_labels
 from discover.readers.sampling import jitter_text, regular
 from discover.readers.source import Source
+from discover.record_kind import classify
 from discover.records import Finding, Record
 from models.checks import Array, InputError
 
@@ -77,8 +78,9 @@ def read_record(
         findings.append(Finding("warning", assumed_units(columns.assumed), entry.file))
     values = dict(columns.values)
     has_motion = "displacement" in values
+    time, measured = values.pop("time"), values
     sampled = regular(
-        values.pop("time"),
+        time,
         values,
         raw_time=columns.raw_time,
         resample=has_motion,
@@ -90,9 +92,6 @@ def read_record(
             found = f"{values[name][0]:.6g} throughout"
             raise InputError(name, expected="varying", found=found, where=entry.file)
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
-    if sampled.jitter:
-        level, text = jitter_text(sampled.jitter, step)
-        findings.append(Finding(level, text, entry.file))
     clipped = clipping_text(values["force"])
     if clipped:
         findings.append(Finding("warning", clipped, entry.file))
@@ -125,6 +124,12 @@ def read_record(
         held_out=entry.held_out,
         uniform=sampled.uniform,
     )
+    if sampled.jitter:
+        resampled = classify(record).kind != "sine"
+        level, text = jitter_text(sampled.jitter, step, resampled=resampled)
+        findings.append(Finding(level, text, entry.file))
+        if not resampled:
+            record = record.sampled(time, measured)
     findings.extend(check_labels(record))
     return record, findings
 

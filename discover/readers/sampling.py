@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
+from discover.records import GAP, on_grid
 from models.checks import Array, InputError
 
 FEWEST_SAMPLES = 16
@@ -15,7 +15,6 @@ FEWEST_SAMPLES = 16
 
 _NEGLIGIBLE = 1e-3  # of the step: under it jitter is no jitter
 _STRONG = 0.2  # of the step, root mean square: above it resampling costs accuracy
-_GAP = 1.5  # of the median step
 
 
 @dataclass(frozen=True)
@@ -86,25 +85,25 @@ def regular(
         return Sampled(time, columns, uniform=False, jitter=0.0)
     _check_gaps(time, where, place)
     even = np.linspace(time[0], time[-1], size)
-    names = list(columns)
-    table = CubicSpline(time, np.column_stack([columns[name] for name in names]))(even)
-    resampled = {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(names)}
+    resampled = on_grid(time, columns, even)
     jitter = float(np.sqrt(np.mean((time - even) ** 2)) / step)
     return Sampled(even, resampled, uniform=True, jitter=jitter)
 
 
-def jitter_text(jitter: float, step: float) -> tuple[str, str]:
-    """Return the level and the text of what to tell about a resampled record.
+def jitter_text(jitter: float, step: float, *, resampled: bool) -> tuple[str, str]:
+    """Return the level and the text of what to tell about a record whose times jitter.
 
     Examples
     --------
-    >>> jitter_text(0.05, 0.001)[0]
+    >>> jitter_text(0.05, 0.001, resampled=True)[0]
     'note'
     """
     text = (
         f"the time steps are not equal ({100.0 * jitter:.2g} % of {step:.4g} s, root mean square):"
-        " resampled onto a uniform grid by a cubic spline"
     )
+    if not resampled:
+        return "note", text + " the sine test is fitted at the times as measured"
+    text += " resampled onto a uniform grid by a cubic spline"
     if jitter > _STRONG:
         return "warning", text + "; so much jitter costs accuracy at high frequency"
     return "note", text
@@ -162,7 +161,7 @@ def _check_increasing(time: Array, where: str, place: Callable[[int], str]) -> N
 def _check_gaps(time: Array, where: str, place: Callable[[int], str]) -> None:
     steps = np.diff(time)
     typical = float(np.median(steps))
-    bad = np.flatnonzero(steps > _GAP * typical)
+    bad = np.flatnonzero(steps > GAP * typical)
     if bad.size:
         row = int(bad[0]) + 1
         more = f" ({bad.size} such gaps)" if bad.size > 1 else ""

@@ -97,9 +97,10 @@ def check_record(record: Record) -> RecordCheck:
     """
     kind = classify(record)
     force_noise, displacement_noise = None, None
-    if record.displacement is not None:
-        displacement_noise = noise_floor(record.displacement, record.step, kind)
-        level = noise_floor(record.force, record.step, kind)
+    even = record.even
+    if even.displacement is not None:
+        displacement_noise = noise_floor(even.displacement, record.step, kind)
+        level = noise_floor(even.force, record.step, kind)
         size = float(np.sqrt(np.mean(record.force[kind.usable] ** 2)))
         force_noise = 100.0 * level / size if level is not None and size > 0.0 else None
     return RecordCheck(

@@ -55,20 +55,41 @@ def test_time_rounded_to_repeats_is_put_back_if_the_digit_is_fine_enough(tmp_pat
         _read(tmp_path, np.round(np.arange(2000) / 4000.0, 3))
 
 
+def _jittered(seed: int, share: float) -> np.ndarray:
+    return TIME + share * np.random.default_rng(seed).uniform(-1.0, 1.0, TIME.size)
+
+
 def test_jitter_is_resampled_to_the_true_signal_and_said(tmp_path: Path) -> None:
-    rng = np.random.default_rng(0)
-    time = TIME + 2e-4 * rng.uniform(-1.0, 1.0, TIME.size)
-    turn = 2 * np.pi * 1.5
-    found = _read(tmp_path, time, 10.0 * np.sin(turn * time), np.sin(turn * time + 0.3))
+    time = _jittered(0, 2e-4)
+
+    def motion(t: np.ndarray) -> np.ndarray:
+        return 8.0 * np.sin(9.0 * t) + 5.0 * np.sin(5.3 * t) + 2.0 * np.sin(3.1 * t)
+
+    found = _read(tmp_path, time, motion(time), 0.1 * motion(time + 0.03))
     (record,) = found.records
     assert np.ptp(np.diff(record.time)) < 1e-12
-    np.testing.assert_allclose(record.displacement, 0.01 * np.sin(turn * record.time), atol=2e-8)
+    np.testing.assert_allclose(record.displacement, 1e-3 * motion(record.time), atol=2e-8)
     inner = slice(5, -5)
-    exact = 1e3 * np.sin(turn * record.time + 0.3)
+    exact = 1e2 * motion(record.time + 0.03)
     np.testing.assert_allclose(record.force[inner], exact[inner], atol=2e-3)
     (finding,) = found.findings
     assert finding.level == "note"
     assert "resampled onto a uniform grid by a cubic spline" in finding.text
+
+
+def test_a_sine_test_keeps_the_times_at_which_it_was_measured(tmp_path: Path) -> None:
+    """A spline would ring beside every jump of friction, and that is no noise."""
+    time = _jittered(0, 1e-3)
+    turn = 2 * np.pi * 1.5
+    friction = np.sign(np.cos(turn * time))
+    found = _read(tmp_path, time, 10.0 * np.sin(turn * time), friction)
+    (record,) = found.records
+    np.testing.assert_allclose(record.time, time, atol=1e-6)
+    np.testing.assert_allclose(record.force, 1e3 * friction)
+    assert np.ptp(np.diff(record.even.time)) < 1e-12
+    assert np.abs(record.even.force).max() > 1.1e3
+    (finding,) = found.findings
+    assert (finding.level, "times as measured" in finding.text) == ("note", True)
 
 
 def test_resampling_error_falls_with_the_fourth_power_of_the_step() -> None:
@@ -94,8 +115,8 @@ def test_resampling_error_falls_with_the_fourth_power_of_the_step() -> None:
 
 def test_strong_jitter_is_a_warning(tmp_path: Path) -> None:
     rng = np.random.default_rng(2)
-    steps = 0.005 * rng.uniform(0.6, 1.4, TIME.size)
-    found = _read(tmp_path, np.cumsum(steps))
+    time = np.cumsum(0.005 * rng.uniform(0.6, 1.4, TIME.size))
+    found = _read(tmp_path, time, 10.0 * np.sin(time**1.5))
     assert found.findings[0].level == "warning"
     assert "costs accuracy" in found.findings[0].text
 

@@ -1,0 +1,62 @@
+"""Records in memory: what they refuse, and their times."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from discover.gap import close_gap
+from discover.records import Campaign, Record
+from models.checks import InputError
+from tests.discover.gap_data import PLAN, device
+
+MODEL = "fit:inertia,viscous-damping,coulomb-friction"
+
+
+def jittered(frequency, amplitude, seed):
+    """Return a sine test whose steps differ by a sixth, with friction that jumps."""
+    rng = np.random.default_rng(seed)
+    step = 1.0 / (100.0 * frequency)
+    time = (np.arange(800) + rng.uniform(-0.25, 0.25, 800)) * step
+    omega = 2.0 * np.pi * frequency
+    x = amplitude * np.sin(omega * time)
+    v, a = amplitude * omega * np.cos(omega * time), -(omega**2) * x
+    force = device(time, x, v, a) + 60.0 * np.tanh(v / 1e-3)
+    force += 0.01 * np.std(force) * rng.standard_normal(time.size)
+    return Record(f"{frequency:g}-{amplitude:g}.csv", time, force, x)
+
+
+def test_jitter_is_no_missing_effect():
+    records = tuple(jittered(f, a, k) for k, (f, a) in enumerate(PLAN))
+    found = close_gap(Campaign("jitter", records), MODEL)
+    assert found.verdict == "agrees"
+    assert found.gap_percent == pytest.approx(1.0, abs=0.1)
+    resampled = close_gap(Campaign("splines", tuple(r.even for r in records)), MODEL)
+    assert resampled.gap_percent > 1.5 * found.gap_percent
+
+
+def test_an_even_record_is_itself():
+    time = np.arange(100) / 50.0
+    x = np.sin(time)
+    record = Record("r.csv", time, x.copy(), x, temperature=300.0 + time, inputs={"u": x.copy()})
+    assert record.even is record
+    moved = record.sampled(time + 1e-3 * np.sin(9.0 * time), {
+        "force": x, "displacement": x, "temperature": record.temperature, "u": x
+    })  # fmt: skip
+    even = moved.even
+    assert even is not moved
+    assert even is moved.even
+    assert (even.velocity, sorted(even.inputs)) == (None, ["u"])
+    assert np.ptp(np.diff(even.time)) < 1e-12
+
+
+@pytest.mark.parametrize(
+    "time", [np.delete(np.arange(101.0), 50), np.r_[0.0, np.arange(99.0)], np.arange(100.0)[::-1]]
+)
+def test_times_with_gaps_or_that_do_not_rise_are_refused(time):
+    x = np.sin(0.3 * np.arange(100.0))
+    with pytest.raises(InputError, match=r"r\.csv: time must be rising, without gaps"):
+        Record("r.csv", time, x.copy(), x)
+    digitised = Record("r.csv", time, x, frequency=1.0, amplitude=0.01, uniform=False)
+    assert digitised.even is digitised
+    assert replace(digitised, held_out=True).held_out
