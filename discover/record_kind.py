@@ -181,13 +181,13 @@ def _local_phasors(time: Array, x: Array, fit: SineFit) -> tuple[NDArray[np.int_
     step = float(time[-1] - time[0]) / (time.size - 1)
     length = min(max(round(1.0 / (fit.frequency * step)), 4), x.size)
     starts = np.arange(0, x.size - length + 1, max(length // 4, 1))
-    local = np.arange(length) * step
     plain = x - fit.coefficients[0].real - fit.trend * (time - time.mean())
-    solve = np.linalg.pinv(harmonic_design(local, fit.frequency, 1))
-    rows = sliding_window_view(plain, length)[starts] @ solve.T
-    phasors = rows[:, 1] + 1j * rows[:, 2]
-    turn = np.exp(2j * np.pi * fit.frequency * time[starts])
-    relative = phasors / (turn * fit.coefficients[1])
+    columns = harmonic_design(time, fit.frequency, 1)[:, :3]
+    products = np.column_stack([columns, plain])[:, :, None] * columns[:, None, :]
+    sums = np.concatenate([np.zeros((1, 4, 3)), np.cumsum(products, axis=0)])
+    sums = sums[starts + length] - sums[starts]
+    found = np.linalg.pinv(sums[:, :3], hermitian=True) @ sums[:, 3, :, None]
+    relative = (found[:, 1, 0] + 1j * found[:, 2, 0]) / fit.coefficients[1]
     return starts, np.abs(relative), np.angle(relative)
 
 

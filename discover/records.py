@@ -43,10 +43,10 @@ class Finding:
 
 @dataclass(frozen=True)
 class Record:
-    """One measured record, in SI units, without gaps where it has a displacement.
+    """One measured record, in SI units.
 
-    Times may jitter: a sine test is fitted at the times at which it was measured. What needs equal
-    steps takes `even`.
+    A sine test is fitted at the times at which it was measured, which may jitter and lack samples.
+    What needs equal steps takes `even`.
     """
 
     file: str
@@ -75,7 +75,7 @@ class Record:
     """False only for a digitised force curve, whose points are far from evenly spaced."""
 
     def __post_init__(self) -> None:
-        """Reject columns of unequal length and times with gaps, and freeze the arrays."""
+        """Reject columns of unequal length and times that do not rise, and freeze the arrays."""
         size = self.time.size
         for name in ("time", *_COLUMNS):
             column = getattr(self, name)
@@ -86,13 +86,14 @@ class Record:
                     name, expected=f"of shape ({size},)", found=f"{column.shape}", where=self.file
                 )
             column.flags.writeable = False
-        if self.uniform and self.displacement is not None and size > 2:
-            steps = np.diff(self.time)
-            if not (steps.min() > 0.0 and steps.max() <= GAP * np.median(steps)):
-                raise InputError(
-                    "time", expected="rising, without gaps", where=self.file,
-                    found=f"steps of {steps.min():.6g} to {steps.max():.6g} s",
-                )
+        if size > 1 and not np.diff(self.time).min() > 0.0:
+            raise InputError("time", expected="rising", found="steps back or none", where=self.file)
+
+    @property
+    def gaps(self) -> int:
+        """Number of steps that are longer than the usual one."""
+        steps = np.diff(self.time)
+        return int(np.count_nonzero(steps > GAP * np.median(steps))) if self.uniform else 0
 
     @cached_property
     def even(self) -> Record:

@@ -45,6 +45,11 @@ def observe(record: Record) -> Observation:
         noise = 0.0 if kind.sine is None else kind.sine.noise_rms
         return observe_sine(record, kind.usable, frequency, coefficients, noise)
     if record.even is not record:
+        if record.gaps:
+            raise InputError(
+                "time", expected="without gaps in what is no sine test",
+                found=f"{record.gaps} of them", where=record.file,
+            )
         record = record.even
         kind = classify(record)
     repeats = (kind.cycles or 0.0) >= _FEWEST_PERIODS
