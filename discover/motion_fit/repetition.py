@@ -127,7 +127,8 @@ def _without_changes(
 ) -> Array:
     """Return what cycles differ by, but for what changes slowly: that is no noise.
 
-    The mean may change, and the size of what repeats and of its lowest harmonics.
+    The mean may change, and the size of what repeats and of its lowest harmonics. Samples that are
+    not kept stay as they are: what changes is not known there.
     """
     late = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
     slow = np.polynomial.legendre.legvander(late, _SLOW)[:, 1:]
@@ -137,7 +138,10 @@ def _without_changes(
     changes = (slow[:, :, None] * carriers[:, None, :]).reshape(time.size, -1)
     moved = changes - same @ changes
     moved /= np.maximum(np.linalg.norm(moved, axis=0), 1e-300)
-    return np.asarray(left - moved @ np.linalg.lstsq(moved[kept], left[kept], rcond=1e-9)[0])
+    change = moved[kept] @ np.linalg.lstsq(moved[kept], left[kept], rcond=1e-9)[0]
+    result = left.copy()
+    result[kept] -= change
+    return result
 
 
 def _same_phase(phase: Array, order: NDArray[np.intp], half: float) -> csr_array:
