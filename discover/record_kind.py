@@ -183,10 +183,14 @@ def _local_phasors(time: Array, x: Array, fit: SineFit) -> tuple[NDArray[np.int_
     starts = np.arange(0, x.size - length + 1, max(length // 4, 1))
     plain = x - fit.coefficients[0].real - fit.trend * (time - time.mean())
     columns = harmonic_design(time, fit.frequency, 1)[:, :3]
-    products = np.column_stack([columns, plain])[:, :, None] * columns[:, None, :]
-    sums = np.concatenate([np.zeros((1, 4, 3)), np.cumsum(products, axis=0)])
-    sums = sums[starts + length] - sums[starts]
-    found = np.linalg.pinv(sums[:, :3], hermitian=True) @ sums[:, 3, :, None]
+
+    def over_windows(values: Array) -> Array:
+        total = np.concatenate([[0.0], np.cumsum(values)])
+        return np.asarray(total[starts + length] - total[starts])
+
+    gram = np.array([[over_windows(a * b) for a in columns.T] for b in columns.T])
+    goal = np.array([over_windows(plain * b) for b in columns.T])
+    found = np.linalg.pinv(np.moveaxis(gram, 2, 0), hermitian=True) @ goal.T[:, :, None]
     relative = (found[:, 1, 0] + 1j * found[:, 2, 0]) / fit.coefficients[1]
     return starts, np.abs(relative), np.angle(relative)
 

@@ -16,9 +16,10 @@ from models.device import Device
 
 GAP = 1.5
 """Times the usual step, from which a step is a gap in the record."""
+EVEN = 1e-3
+"""Of a step: what times may be off a grid of equal ones."""
 
 _NO_INPUTS: Mapping[str, Array] = MappingProxyType({})
-_EVEN = 1e-3  # of a step: what times may be off the grid
 _COLUMNS = ("force", "displacement", "velocity", "acceleration", "temperature")
 
 
@@ -99,7 +100,7 @@ class Record:
     def even(self) -> Record:
         """The record in equal steps: itself, or by a cubic spline through its samples."""
         grid = np.linspace(self.time[0], self.time[-1], self.time.size)
-        if not self.uniform or np.abs(self.time - grid).max() <= _EVEN * self.step:
+        if not self.uniform or np.abs(self.time - grid).max() <= EVEN * self.step:
             return self
         columns = {n: getattr(self, n) for n in _COLUMNS if getattr(self, n) is not None}
         return self.sampled(grid, on_grid(self.time, {**columns, **self.inputs}, grid))

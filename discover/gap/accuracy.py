@@ -43,7 +43,7 @@ def misfit(observation: Observation, force: Array) -> Misfit:
     noise = sum(w.share * w.noise_power for w in observation.windows)
     size = observation.measured.size
     if observation.kind == "sine":
-        left = observation.measured - observation.at_samples(force)
+        left = sample_misfit(observation, force)
         square = float(np.mean(observation.measured**2))
         return Misfit(float(np.mean(left**2)), square, float(noise), size)
     error, power = 0.0, 0.0
@@ -52,6 +52,11 @@ def misfit(observation: Observation, force: Array) -> Misfit:
         error += w.share * (float(np.sum(np.abs(lines) ** 2)) + w.rest)
         power += w.share * w.power
     return Misfit(error, power, float(noise), size)
+
+
+def sample_misfit(observation: Observation, force: Array) -> Array:
+    """Return the measured force less another (N,) on the motion's grid, at the samples, N."""
+    return observation.measured - observation.at_samples(force)
 
 
 def pooled(misfits: Sequence[Misfit], *, noise: bool = False) -> float:

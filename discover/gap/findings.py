@@ -6,12 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from discover.gap.accuracy import sample_misfit
 from discover.gap.baseline import Baseline
 from discover.gap.result import CLOSED, NamedEffect
 from discover.gap.search import Search
-from discover.gap.stages import Stage, sample_misfit, seen_gap
+from discover.gap.stages import Stage, seen_gap
 from discover.naming.evidence import AGREES, FEW, UNKNOWN
+from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
+from discover.naming.unit_rows import whole_model
 from discover.records import Finding
 
 _WORSE = 1.02  # of a gap that was not fitted, from which a round is said to raise it
@@ -75,7 +78,7 @@ def findings_of(
                         f" {entry.effect} and dropped.")
             )
     result += _doubts(baseline, rounds)
-    result += _noisy(baseline.rows)
+    result += _noisy(baseline.rows, found.final)
     result += _spikes(baseline.rows, found.final, noise)
     ended = found.last.ranked[0]
     over = seen_gap(baseline.rows, found.final) / max(noise, 1e-300)
@@ -142,13 +145,12 @@ def _doubts(baseline: Baseline, rounds: Sequence[NamedEffect]) -> list[Finding]:
     return result
 
 
-def _noisy(rows: Sequence[RecordRows]) -> list[Finding]:
+def _noisy(rows: Sequence[RecordRows], at: Stage) -> list[Finding]:
     """Return what can't be judged because the force does not repeat."""
-    fitted = [r.observation for r in rows if not r.observation.held_out]
     levels = [
-        100.0 * float(np.sqrt(sum(w.share * w.noise_power for w in o.windows)))
-        / max(float(np.sqrt(np.mean(o.measured**2))), 1e-300)
-        for o in fitted
+        m.noise_percent
+        for r, m in zip(rows, at.misfits, strict=True)
+        if not r.observation.held_out
     ]
     count = sum(level > _NOISY for level in levels)
     if not count:
@@ -169,7 +171,10 @@ def _spikes(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding
     if seen_gap(rows, at) <= CLOSED * noise:
         return []
     sines = [r for r in rows if not r.observation.held_out and r.observation.kind == "sine"]
-    left = [sample_misfit(r, at.fit.model) ** 2 for r in sines]
+    left = [
+        sample_misfit(r.observation, model_force(r.observation, whole_model(r, at.fit.model))) ** 2
+        for r in sines
+    ]
     if not left:
         return []
     most = sum(float(np.sort(s)[-max(1, round(_SINGLE * s.size)) :].sum()) for s in left)

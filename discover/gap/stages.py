@@ -45,12 +45,6 @@ def record_misfit(rows: RecordRows, model: ForceModel) -> Misfit:
     return misfit(rows.observation, model_force(rows.observation, whole_model(rows, model)))
 
 
-def sample_misfit(rows: RecordRows, model: ForceModel) -> Array:
-    """Return the measured force less the model's at the samples of a sine test, (N,) in N."""
-    o = rows.observation
-    return o.measured - o.at_samples(model_force(o, whole_model(rows, model)))
-
-
 def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
     """Return each record's misfit by the model fitted to the others.
 

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.records import GAP, on_grid
+from discover.records import EVEN, GAP, on_grid
 from models.checks import Array, InputError
 
 FEWEST_SAMPLES = 16
 """A record of fewer samples is an error."""
 
-_NEGLIGIBLE = 1e-3  # of the step: under it jitter is no jitter
 _STRONG = 0.2  # of the step, root mean square: above it resampling costs accuracy
 
 
@@ -77,7 +76,7 @@ def regular(
     grid = time.mean() + step * centred
     deviation = np.abs(time - grid)
     scale = step / _raw_step(raw_time, centred)
-    if step > 0.0 and deviation.max() <= max(_rounding(raw_time) * scale, _NEGLIGIBLE * step):
+    if step > 0.0 and deviation.max() <= max(_rounding(raw_time) * scale, EVEN * step):
         uniform = _anchored(time, step)
         return Sampled(uniform, columns, uniform=True, jitter=0.0)
     _check_increasing(time, where, place)

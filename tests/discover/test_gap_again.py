@@ -11,8 +11,6 @@ from models.constitutive import SegmentedModel
 from tests.discover.gap_data import campaign, device
 
 MODEL = "fit:inertia,viscous-damping"
-
-
 EFFECTS = ["quadratic-damping", "asymmetric-damping", "stiffness"]
 
 

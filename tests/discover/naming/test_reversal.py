@@ -47,5 +47,4 @@ def test_a_wide_reversal_does_not_hide_viscous_damping(found):
 
 def test_a_change_over_time_has_to_show(found):
     """Drift that has settled after a fiftieth of the record fits as well: no name for it."""
-    assert "thermal-drift" not in found.rounds[0].alternatives
-    assert dict(found.rounds[0].alternatives).get("thermal-drift", 0.0) < 0.1
+    assert "thermal-drift" not in dict(found.rounds[0].alternatives)
