@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from discover.gap.accuracy import sample_misfit
+from discover.gap.accuracy import pooled, sample_misfit
 from discover.gap.baseline import Baseline
 from discover.gap.result import CLOSED, NamedEffect
 from discover.gap.search import Search
@@ -21,6 +21,8 @@ _WORSE = 1.02  # of a gap that was not fitted, from which a round is said to rai
 _NOISY = 20.0  # percent of a record's force
 _SINGLE = 0.01  # of a record's samples
 _MOST = 0.5  # of what is left
+_NOT_MET = 1.5  # times the noise, and what fitted records are off by
+_FURTHER = 1.02  # of the fitted records' range
 _NOT_THE_LINES = 1.5  # times the noise, from which a gap is not what the tests' lines show
 
 
@@ -80,6 +82,7 @@ def findings_of(
     result += _doubts(baseline, rounds)
     result += _noisy(baseline.rows, found.final)
     result += _spikes(baseline.rows, found.final, noise)
+    result += _not_met(baseline.rows, found.final)
     ended = found.last.ranked[0]
     over = seen_gap(baseline.rows, found.final) / max(noise, 1e-300)
     by_shapes = found.last.tolerated > 0.0
@@ -190,3 +193,57 @@ def _spikes(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding
             f" by them; sample faster (the slowest record has {slowest:.3g} Hz).",
         )
     ]
+
+
+def _not_met(rows: Sequence[RecordRows], at: Stage) -> list[Finding]:
+    """Return which records that were not fitted are met worse than those that were."""
+    marked = [r for r in rows if r.observation.held_out]
+    seen = [r for r in rows if not r.observation.held_out]
+    fitted = [m for r, m in zip(rows, at.misfits, strict=True) if not r.observation.held_out]
+    met = pooled(fitted) / max(pooled(fitted, noise=True), 1e-300)
+    off = []
+    for index, (r, m) in enumerate(zip(marked or rows, at.unseen, strict=False)):
+        own = met if marked else fitted[index].percent / max(fitted[index].noise_percent, 1e-300)
+        if m.percent > _NOT_MET * max(own, 1.0) * m.noise_percent:
+            off.append((m.percent / max(m.noise_percent, 1e-300), r, m))
+    if not off:
+        return []
+    _, worst, m = max(off, key=lambda o: o[0])
+    count = f"{len(off)} of {len(at.unseen)}"
+    if not marked:
+        return [
+            Finding(
+                "warning",
+                f"Left out, {count} records are predicted worse than they are fitted, this one to"
+                f" {m.percent:.3g} % (noise {m.noise_percent:.3g} %): what the model says there is"
+                " known from it alone. Test near it again.",
+                worst.observation.file,
+            )
+        ]
+    beyond = _beyond_fitted(worst, seen)
+    return [
+        Finding(
+            "warning",
+            f"{count} records that are held out are met worse than the fitted ones, this one to"
+            f" {m.percent:.3g} % (noise {m.noise_percent:.3g} %)"
+            + (f"; it goes beyond them in {beyond}" if beyond else "")
+            + ". What only it shows is not searched for: drop its mark, or test there again.",
+            worst.observation.file,
+        )
+    ]
+
+
+def _beyond_fitted(unseen: RecordRows, seen: Sequence[RecordRows]) -> str:
+    """Return in what a record goes beyond the fitted ones, in words; "" where in nothing."""
+    own = unseen.observation
+    others = [r.observation for r in seen]
+    ranges = (
+        ("amplitude", "mm", 1e3 * own.amplitude, 1e3 * max(o.amplitude for o in others)),
+        ("frequency", "Hz", own.frequency, max(o.frequency for o in others)),
+        ("speed", "m/s", own.speed, max(o.speed for o in others)),
+    )
+    return " and ".join(
+        f"{name} ({value:.3g} {unit}, they {most:.3g})"
+        for name, unit, value, most in ranges
+        if value > _FURTHER * most
+    )

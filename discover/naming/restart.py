@@ -12,6 +12,7 @@ from discover.naming.columns import without_span
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
+from discover.naming.scattered import scattered
 from discover.naming.unit_rows import UnitRows, whole_model
 from models.constitutive import FittedTerm, ForceModel
 
@@ -49,9 +50,10 @@ def polished(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     better = fit_model(
         samples, fit.model, fit.parameters, iterations=_POLISH, enough=_ENOUGH, exact=False
     )
+    better = scattered(samples, better)
     if not better.chi2 < start.chi2:
         return fit
-    return fit_model(rows, better.model, fit.parameters, iterations=0)
+    return fit_model(rows, better.model, better.parameters, iterations=0)
 
 
 def restarted(

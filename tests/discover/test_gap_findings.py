@@ -89,3 +89,51 @@ def test_what_is_left_in_single_samples_is_told(share, warned):
     assert found.final_gap_percent > 1.2 * found.noise_percent
     told = [text for text in warnings(found.findings) if "no longer than a sample" in text]
     assert bool(told) is warned
+
+
+def with_a_stop(t, x, v, a):
+    beyond = np.maximum(np.abs(x) - 0.006, 0.0)
+    return device(t, x, v, a) + 3e5 * beyond * np.sign(x)
+
+
+def unmet(found):
+    return [
+        f for f in found.findings if "held out are met worse" in f.text or "Left out," in f.text
+    ]
+
+
+def test_what_only_held_out_records_show_is_told():
+    """Where a stop is reached in held-out records only, the fitted ones lack nothing."""
+    tests = campaign(with_a_stop)
+    deep = [np.ptp(r.displacement) > 0.012 for r in tests.records]
+    assert 0 < sum(deep) < len(deep)
+    marked = replace(tests, records=tuple(
+        replace(r, held_out=far) for r, far in zip(tests.records, deep, strict=True)
+    ))
+    found = close_gap(marked, MODEL, effects=["stiffness", "end-stop"])
+    assert found.verdict == "agrees"
+    (told,) = unmet(found)
+    assert f"{sum(deep)} of {sum(deep)} records" in told.text
+    assert "beyond them in amplitude" in told.text
+    assert told.record in {r.file for r, far in zip(tests.records, deep, strict=True) if far}
+
+
+def test_what_one_record_alone_tells_is_told():
+    tests = campaign(with_a_stop)
+    deep = [i for i, r in enumerate(tests.records) if np.ptp(r.displacement) > 0.012]
+    one = replace(tests, records=tuple(
+        r for i, r in enumerate(tests.records) if i not in deep[1:]
+    ))
+    found = close_gap(one, MODEL, effects=["end-stop"])
+    (told,) = unmet(found)
+    assert told.record == tests.records[deep[0]].file
+    assert "Test near it again" in told.text
+
+
+def test_records_that_are_met_are_not_told():
+    tests = campaign(device)
+    marked = replace(tests, records=(
+        replace(tests.records[0], held_out=True), *tests.records[1:]
+    ))
+    assert unmet(close_gap(marked, MODEL, effects=["stiffness"])) == []
+    assert unmet(close_gap(tests, MODEL, effects=["stiffness"])) == []

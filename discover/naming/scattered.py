@@ -1,0 +1,136 @@
+"""A joint's shape sought over all of its range, on samples: its impacts make many hollows.
+
+A fit's steps end in the next hollow. Scattered shapes are ranked by what they leave in the records
+with the greatest misfits, and the best are evolved (differential evolution, Storn and Price 1997).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import Bounds, differential_evolution
+from scipy.stats import qmc
+
+from discover.naming.candidates import scales_of
+from discover.naming.columns import without_span
+from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
+from discover.naming.rows import RecordRows
+from discover.naming.unit_rows import UnitRows
+from models.checks import Array
+from models.constitutive import FittedTerm, ForceModel
+from models.terms import Shape
+
+_NEAR = {"contact": 6.0, "gap": 1.5, "limit": 1.35}  # factors of what a fit found, either way
+_LOSSES = (0.02, 1.0)
+_LAGS = (0.01, 0.5)  # of a valve, over the greatest angular frequency
+_AT_ONCE = 0.3  # of the shapes, that a valve closes without a lag in
+_SCATTERED = 9  # power of two, of shapes
+_EVOLVED = 24
+_GENERATIONS = 15
+_RANK_ON, _EVOLVE_ON = 2, 4  # records
+_STEPS = 6
+_ENOUGH = 0.003
+_GOOD = 1.5  # of chi-square a sample, up to which nothing better is sought
+
+
+def scattered(samples: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+    """Return the better of a fit and one whose joint was sought over all of its range.
+
+    Parameters
+    ----------
+    samples : sequence of RecordRows
+        The records' samples as rows.
+    fit : ModelFit
+        Fitted to them; its last term is the joint.
+    """
+    *rest, joint = fit.model.terms
+    if not joint.shape.get("contact", 0.0) or fit.chi2 < _GOOD * fit.residual.size:
+        return fit
+    box = _Box.around(joint, scales_of([r.observation for r in samples]).omega)
+    order = np.argsort(misfits(samples, fit))[::-1]
+    telling = [samples[i] for i in order[:_EVOLVE_ON]]
+    units = UnitRows()
+    added = [t for t in rest if t.term.acts == "force"]
+
+    def model(point: Array) -> ForceModel:
+        return ForceModel((*rest, FittedTerm(joint.id, 1.0, box.shape(point))), fit.model.name)
+
+    def left(point: Array, rows: Sequence[RecordRows]) -> float:
+        found = fit_model(rows, model(point), (), units=units).residual
+        if added:
+            span = np.stack([units.of_all(rows, t) for t in added])
+            found = without_span(found[None], span)[0]
+        return float(np.nan_to_num(found @ found, nan=1e300, posinf=1e300))
+
+    points = qmc.Sobol(box.size, seed=0).random_base2(_SCATTERED)
+    first = np.array([left(p, telling[:_RANK_ON]) for p in points])
+    best = np.concatenate([[box.centre], points[np.argsort(first)[: _EVOLVED - 1]]])
+    evolved = differential_evolution(
+        left, Bounds(np.zeros(box.size), np.ones(box.size)), args=(telling,),
+        maxiter=_GENERATIONS, init=best, polish=False, tol=0.0, seed=0,
+    )
+    other = model(evolved.x)
+    found = fit_model(
+        samples, other, free_parameters(other), iterations=_STEPS, enough=_ENOUGH, units=units,
+        exact=False,
+    )
+    return found if found.chi2 < fit.chi2 else fit
+
+
+@dataclass(frozen=True)
+class _Box:
+    """The shapes that are tried, as points of a unit cube."""
+
+    joint: FittedTerm
+    """In the middle."""
+    names: tuple[str, ...]
+    """Of the shape's parameters, in the cube's order."""
+    omega: float
+    """Greatest angular frequency, rad/s."""
+
+    @classmethod
+    def around(cls, joint: FittedTerm, omega: float) -> _Box:
+        """Return the box around a joint."""
+        names = [*(n for n in _NEAR if n in joint.shape), "loss"]
+        names += ["lag"] if "lag" in joint.shape else []
+        return cls(joint, tuple(names), omega)
+
+    @property
+    def size(self) -> int:
+        """Dimensions."""
+        return len(self.names)
+
+    @property
+    def centre(self) -> Array:
+        """(D,) the point of the joint itself."""
+        return np.array([self._place(name) for name in self.names])
+
+    def _place(self, name: str) -> float:
+        value = self.joint.shape[name]
+        if name == "loss":
+            low, high = _LOSSES
+            return float(np.clip((value - low) / (high - low), 0.0, 1.0))
+        if name == "lag":
+            if value == 0.0:
+                return 0.0
+            low, high = np.log(_LAGS)
+            share = (np.log(value * self.omega) - low) / (high - low)
+            return float(np.clip(_AT_ONCE + (1.0 - _AT_ONCE) * share, _AT_ONCE, 1.0))
+        return 0.5
+
+    def shape(self, point: Array) -> Shape:
+        """Return the shape at a point (D,)."""
+        found = dict(self.joint.shape)
+        for name, place in zip(self.names, point, strict=True):
+            if name == "loss":
+                found[name] = float(_LOSSES[0] + place * (_LOSSES[1] - _LOSSES[0]))
+            elif name == "lag":
+                low, high = np.log(_LAGS)
+                share = (place - _AT_ONCE) / (1.0 - _AT_ONCE)
+                waits = float(np.exp(low + share * (high - low)) / self.omega)
+                found[name] = waits if found["refill"] > 0.0 and share > 0.0 else 0.0
+            else:
+                found[name] *= float(_NEAR[name] ** (2.0 * place - 1.0))
+        return found
