@@ -209,12 +209,12 @@ def _not_met(rows: Sequence[RecordRows], at: Stage) -> list[Finding]:
     if not off:
         return []
     _, worst, m = max(off, key=lambda o: o[0])
-    count = f"{len(off)} of {len(at.unseen)}"
+    count, verb = f"{len(off)} of {len(at.unseen)} records", "is" if len(off) == 1 else "are"
     if not marked:
         return [
             Finding(
                 "warning",
-                f"Left out, {count} records are predicted worse than they are fitted, this one to"
+                f"{count} {verb} predicted worse when left out than when fitted, this one to"
                 f" {m.percent:.3g} % (noise {m.noise_percent:.3g} %): what the model says there is"
                 " known from it alone. Test near it again.",
                 worst.observation.file,
@@ -224,7 +224,7 @@ def _not_met(rows: Sequence[RecordRows], at: Stage) -> list[Finding]:
     return [
         Finding(
             "warning",
-            f"{count} records that are held out are met worse than the fitted ones, this one to"
+            f"{count} that are held out {verb} met worse than the fitted ones, this one to"
             f" {m.percent:.3g} % (noise {m.noise_percent:.3g} %)"
             + (f"; it goes beyond them in {beyond}" if beyond else "")
             + ". What only it shows is not searched for: drop its mark, or test there again.",
@@ -237,13 +237,14 @@ def _beyond_fitted(unseen: RecordRows, seen: Sequence[RecordRows]) -> str:
     """Return in what a record goes beyond the fitted ones, in words; "" where in nothing."""
     own = unseen.observation
     others = [r.observation for r in seen]
-    ranges = (
-        ("amplitude", "mm", 1e3 * own.amplitude, 1e3 * max(o.amplitude for o in others)),
-        ("frequency", "Hz", own.frequency, max(o.frequency for o in others)),
-        ("speed", "m/s", own.speed, max(o.speed for o in others)),
-    )
-    return " and ".join(
-        f"{name} ({value:.3g} {unit}, they {most:.3g})"
-        for name, unit, value, most in ranges
-        if value > _FURTHER * most
-    )
+    parts = []
+    for name, unit, value, known in (
+        ("amplitude", "mm", 1e3 * own.amplitude, [1e3 * o.amplitude for o in others]),
+        ("frequency", "Hz", own.frequency, [o.frequency for o in others]),
+        ("speed", "m/s", own.speed, [o.speed for o in others]),
+    ):
+        if value > _FURTHER * max(known):
+            parts.append(f"{name} ({value:.3g} {unit}, they up to {max(known):.3g})")
+        elif _FURTHER * value < min(known):
+            parts.append(f"{name} ({value:.3g} {unit}, they from {min(known):.3g})")
+    return " and ".join(parts)

@@ -98,7 +98,7 @@ def with_a_stop(t, x, v, a):
 
 def unmet(found):
     return [
-        f for f in found.findings if "held out are met worse" in f.text or "Left out," in f.text
+        f for f in found.findings if "met worse" in f.text or "worse when left out" in f.text
     ]
 
 
