@@ -27,6 +27,10 @@ _SLOPED = 1e-3  # of the weights' square, by which their phases have to differ f
 _HARMONICS = 31
 _RESOLVED = 0.12  # of the sampling rate: what is slower is smooth over one sample
 _SLOW = 3
+_CYCLES_EACH = 3.0  # for every order of slow change
+_BESIDE = 2.0  # harmonics beyond those that change, that see it
+_MANY_CYCLES = 20.0  # of which slow changes take next to nothing
+_AT_ONCE = 16  # waves
 _CHANGING = 5  # harmonics whose size may change slowly
 _ALONE = 0.95  # of a sample in its own comparison: no other cycle was near
 _ROUGH = 3.0  # times the median of what phases leave, above which a phase is left out
@@ -86,7 +90,10 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     kept = _smooth_phases(left, own, order, cycles)
     if np.count_nonzero(kept) < _FEWEST_SAMPLES:
         return None
-    left = _without_changes(same, time, left, repeated, frequency, kept)
+    changes = _changes(same, time, repeated, frequency, cycles)
+    basis = _basis(changes[kept])
+    left = left.copy()
+    left[kept] -= basis @ (basis.T @ left[kept])
     kept = _smooth_phases(left, own, order, cycles)
     at = np.rint((time - time[0]) / step).astype(int)
     whole = np.zeros(at[-1] + 1)
@@ -97,6 +104,9 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     taper = np.hanning(whole.size + 2)[1:-1] ** 2
     width = float(frequencies[1])
     gain = _response(same, time, np.flatnonzero(kept), width, frequencies.size)
+    if cycles < _MANY_CYCLES:
+        low = frequencies[frequencies < (_changing(time.size) + _BESIDE) * frequency]
+        gain[: low.size] *= _left_by(_basis(changes[kept]), same, time, kept, low)
     gain *= float(taper @ share) / float(np.sum(taper))
     spacing = frequency / width
     apart = np.abs(np.mod(frequencies / frequency + 0.5, 1.0) - 0.5) * spacing
@@ -122,26 +132,46 @@ def _without_lowest(time: Array, force: Array, frequency: float, step: float) ->
     return np.asarray(force - design[:, :periodic] @ found[:periodic])
 
 
-def _without_changes(
-    same: csr_array, time: Array, left: Array, repeated: Array, frequency: float, kept: Kept
-) -> Array:
-    """Return what cycles differ by, but for what changes slowly: that is no noise.
+def _changing(samples: int) -> int:
+    """Return the number of harmonics whose size may change."""
+    return int(np.clip(samples // _SAMPLES_EACH, 1, _CHANGING))
 
-    The mean may change, and the size of what repeats and of its lowest harmonics. Samples that are
-    not kept stay as they are: what changes is not known there.
+
+def _changes(
+    same: csr_array, time: Array, repeated: Array, frequency: float, cycles: float
+) -> Array:
+    """Return what slow changes make of the difference between cycles, (N, C): that is no noise.
+
+    The mean may change, and the size of what repeats and of its lowest harmonics: by no more
+    than a straight line where the cycles are few, as they would take in the noise.
     """
     late = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
-    slow = np.polynomial.legendre.legvander(late, _SLOW)[:, 1:]
-    harmonics = int(np.clip(time.size // _SAMPLES_EACH, 1, _CHANGING))
-    lowest = harmonic_design(time, frequency, harmonics)
+    order = int(np.clip(cycles // _CYCLES_EACH, 1, _SLOW))
+    slow = np.polynomial.legendre.legvander(late, order)[:, 1:]
+    lowest = harmonic_design(time, frequency, _changing(time.size))
     carriers = np.column_stack([lowest, repeated])
     changes = (slow[:, :, None] * carriers[:, None, :]).reshape(time.size, -1)
     moved = changes - same @ changes
-    moved /= np.maximum(np.linalg.norm(moved, axis=0), 1e-300)
-    change = moved[kept] @ np.linalg.lstsq(moved[kept], left[kept], rcond=1e-9)[0]
-    result = left.copy()
-    result[kept] -= change
-    return result
+    return np.asarray(moved / np.maximum(np.linalg.norm(moved, axis=0), 1e-300))
+
+
+def _basis(columns: Array) -> Array:
+    """Return an orthonormal basis (N, B) of columns."""
+    left, values, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(left[:, values > 1e-9 * values[0]])
+
+
+def _left_by(
+    basis: Array, same: csr_array, time: Array, kept: Kept, frequencies: Array
+) -> Array:
+    """Return the share of a wave's power that slow changes leave, at each frequency (F,)."""
+    shares = []
+    for begin in range(0, frequencies.size, _AT_ONCE):
+        waves = np.exp(2j * np.pi * np.outer(time, frequencies[begin : begin + _AT_ONCE]))
+        waves = (waves - same @ waves)[kept]
+        power = np.maximum(np.sum(np.abs(waves) ** 2, axis=0), 1e-300)
+        shares.append(1.0 - np.sum(np.abs(basis.T @ waves) ** 2, axis=0) / power)
+    return np.concatenate(shares)
 
 
 def _same_phase(phase: Array, order: NDArray[np.intp], half: float) -> csr_array:

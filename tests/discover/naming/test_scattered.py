@@ -38,10 +38,10 @@ def test_a_valve_that_closes_late_is_found_from_one_that_does_not(valve):
 
 
 def test_flanks_are_found_from_afar(play):
-    samples, stuck = begun(play, "backlash", {**PLAY, "gap": 1.7e-4, "contact": 900.0})
+    samples, stuck = begun(play, "backlash", {**PLAY, "gap": 2.7e-4, "contact": 180.0})
     found = scattered(samples, stuck)
     assert found.chi2 < 0.1 * stuck.chi2
-    assert found.model.terms[-1].shape["gap"] == pytest.approx(PLAY["gap"], rel=0.03)
+    assert found.model.terms[-1].shape["gap"] == pytest.approx(PLAY["gap"], rel=0.06)
 
 
 def test_it_is_the_same_twice(valve):
