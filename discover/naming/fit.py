@@ -270,7 +270,7 @@ def fit_model(
     if linear:
         model = _solved(rows, units, model, parameters, target)
     at = units.of_model(rows, model)
-    chi2 = float(np.sum((target - at) ** 2))
+    chi2 = _square(target - at)
 
     def slopes() -> Array:
         if along is not None:
@@ -307,7 +307,7 @@ def fit_model(
             if linear:
                 trial = _solved(rows, units, trial, parameters, target)
             rows_now = units.of_model(rows, trial)
-            now = float(np.sum((target - rows_now) ** 2))
+            now = _square(target - rows_now)
             if now + drawn(values) < chi2 + pull:
                 model, at, chi2 = trial, rows_now, now
                 damping = max(damping / 10.0, _LEAST_DAMPING)
@@ -323,6 +323,12 @@ def fit_model(
         tangents = _tangents(rows, units, model, parameters, at, linear=False)
     covariance = inverse(tangents @ tangents.T)
     return ModelFit(model, chi2, target - at, tangents, tuple(parameters), covariance)
+
+
+def _square(left: Array) -> float:
+    """Return the sum of squares; infinite where a joint shook itself apart."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return float(np.sum(left**2))
 
 
 def _step(gram: Array, slope: Array, damping: float) -> Array:
