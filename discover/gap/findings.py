@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from discover.gap.accuracy import pooled, sample_misfit
+from discover.gap.accuracy import sample_misfit
 from discover.gap.baseline import Baseline
 from discover.gap.result import CLOSED, NamedEffect
 from discover.gap.search import Search
@@ -82,7 +82,7 @@ def findings_of(
     result += _doubts(baseline, rounds)
     result += _noisy(baseline.rows, found.final)
     result += _spikes(baseline.rows, found.final, noise)
-    result += _not_met(baseline.rows, found.final)
+    result += _not_met(baseline.rows, found.final, noise)
     ended = found.last.ranked[0]
     over = seen_gap(baseline.rows, found.final) / max(noise, 1e-300)
     by_shapes = found.last.tolerated > 0.0
@@ -195,17 +195,16 @@ def _spikes(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding
     ]
 
 
-def _not_met(rows: Sequence[RecordRows], at: Stage) -> list[Finding]:
+def _not_met(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding]:
     """Return which records that were not fitted are met worse than those that were."""
     marked = [r for r in rows if r.observation.held_out]
     seen = [r for r in rows if not r.observation.held_out]
-    fitted = [m for r, m in zip(rows, at.misfits, strict=True) if not r.observation.held_out]
-    met = pooled(fitted) / max(pooled(fitted, noise=True), 1e-300)
+    met = seen_gap(rows, at) / max(noise, 1e-300)
     off = []
-    for index, (r, m) in enumerate(zip(marked or rows, at.unseen, strict=False)):
-        own = met if marked else fitted[index].percent / max(fitted[index].noise_percent, 1e-300)
-        if m.percent > _NOT_MET * max(own, 1.0) * m.noise_percent:
-            off.append((m.percent / max(m.noise_percent, 1e-300), r, m))
+    for r, m, own in zip(marked or rows, at.unseen, at.misfits, strict=False):
+        usual = met * m.noise_percent if marked else own.percent
+        if m.noise_percent > 0.0 and m.percent > _NOT_MET * max(usual, m.noise_percent):
+            off.append((m.percent / m.noise_percent, r, m))
     if not off:
         return []
     _, worst, m = max(off, key=lambda o: o[0])

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import orth
 from scipy.sparse import csr_array
 
 from discover.motion_fit.noise import power_density
@@ -31,6 +32,7 @@ _CYCLES_EACH = 3.0  # for every order of slow change
 _BESIDE = 2.0  # harmonics beyond those that change, that see it
 _MANY_CYCLES = 20.0  # of which slow changes take next to nothing
 _AT_ONCE = 16  # waves
+_SAME = 1e-9  # of the greatest singular value: no change of its own
 _CHANGING = 5  # harmonics whose size may change slowly
 _ALONE = 0.95  # of a sample in its own comparison: no other cycle was near
 _ROUGH = 3.0  # times the median of what phases leave, above which a phase is left out
@@ -91,9 +93,7 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     if np.count_nonzero(kept) < _FEWEST_SAMPLES:
         return None
     changes = _changes(same, time, repeated, frequency, cycles)
-    basis = _basis(changes[kept])
-    left = left.copy()
-    left[kept] -= basis @ (basis.T @ left[kept])
+    left = _without(left, changes, kept)
     kept = _smooth_phases(left, own, order, cycles)
     at = np.rint((time - time[0]) / step).astype(int)
     whole = np.zeros(at[-1] + 1)
@@ -106,7 +106,7 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     gain = _response(same, time, np.flatnonzero(kept), width, frequencies.size)
     if cycles < _MANY_CYCLES:
         low = frequencies[frequencies < (_changing(time.size) + _BESIDE) * frequency]
-        gain[: low.size] *= _left_by(_basis(changes[kept]), same, time, kept, low)
+        gain[: low.size] *= _left_by(orth(changes[kept], rcond=_SAME), same, time, kept, low)
     gain *= float(taper @ share) / float(np.sum(taper))
     spacing = frequency / width
     apart = np.abs(np.mod(frequencies / frequency + 0.5, 1.0) - 0.5) * spacing
@@ -155,10 +155,15 @@ def _changes(
     return np.asarray(moved / np.maximum(np.linalg.norm(moved, axis=0), 1e-300))
 
 
-def _basis(columns: Array) -> Array:
-    """Return an orthonormal basis (N, B) of columns."""
-    left, values, _ = np.linalg.svd(columns, full_matrices=False)
-    return np.asarray(left[:, values > 1e-9 * values[0]])
+def _without(left: Array, changes: Array, kept: Kept) -> Array:
+    """Return what cycles differ by without changes (N, C); samples that are not kept stay.
+
+    What changes is not known there.
+    """
+    basis = orth(changes[kept], rcond=_SAME)
+    result = left.copy()
+    result[kept] -= basis @ (basis.T @ left[kept])
+    return result
 
 
 def _left_by(

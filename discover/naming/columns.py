@@ -50,10 +50,19 @@ def candidate_columns(
 
 def without_span(columns: Array, tangents: Array) -> Array:
     """Return what of `columns` (C, R) the `tangents` (P, R) do not span."""
+    return without_basis(columns, span_of(tangents))
+
+
+def span_of(tangents: Array) -> Array:
+    """Return an orthonormal basis (B, R) of what `tangents` (P, R) span."""
     scale = np.linalg.norm(tangents, axis=1)
     used = tangents[scale > 0.0] / scale[scale > 0.0, None]
     if not used.size:
-        return columns
-    left, values, right = np.linalg.svd(used, full_matrices=False)
-    basis = right[values > 1e-9 * values[0]]
-    return np.asarray(columns - (columns @ basis.T) @ basis)
+        return tangents[:0]
+    _, values, right = np.linalg.svd(used, full_matrices=False)
+    return np.asarray(right[values > 1e-9 * values[0]])
+
+
+def without_basis(columns: Array, basis: Array) -> Array:
+    """Return what of `columns` (C, R) an orthonormal basis (B, R) does not span."""
+    return np.asarray(columns - (columns @ basis.T) @ basis) if basis.size else columns

@@ -326,7 +326,7 @@ def fit_model(
 
 
 def _square(left: Array) -> float:
-    """Return the sum of squares; infinite where a joint shook itself apart."""
+    """Return the sum of squares; not finite where a joint shook itself apart."""
     with np.errstate(over="ignore", invalid="ignore"):
         return float(np.sum(left**2))
 

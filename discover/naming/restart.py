@@ -12,7 +12,7 @@ from discover.naming.columns import without_span
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
-from discover.naming.scattered import scattered
+from discover.naming.scattered import scattered, unexplained
 from discover.naming.unit_rows import UnitRows, whole_model
 from models.constitutive import FittedTerm, ForceModel
 
@@ -173,13 +173,8 @@ def _ranked(
     rows: Sequence[RecordRows], models: Sequence[ForceModel], units: UnitRows
 ) -> list[tuple[float, ForceModel]]:
     """Return models with what of their misfits their own added forces leave, least first."""
-    forces = [t for t in models[0].terms if t.term.acts == "force"] if models else []
-    span = np.stack([units.of_all(rows, t) for t in forces]) if forces else None
-    found = []
-    for model in models:
-        left = fit_model(rows, model, (), units=units).residual[None]
-        left = left if span is None else without_span(left, span)
-        found.append((float(np.nan_to_num(np.sum(left**2), nan=np.inf)), model))
+    left = unexplained(rows, models[0].terms, units) if models else None
+    found = [(left(model), model) for model in models] if left else []
     return sorted(found, key=lambda s: s[0])
 
 

@@ -6,7 +6,7 @@ with the greatest misfits, and the best are evolved (differential evolution, Sto
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,7 @@ from scipy.optimize import Bounds, differential_evolution
 from scipy.stats import qmc
 
 from discover.naming.candidates import scales_of
-from discover.naming.columns import without_span
+from discover.naming.columns import span_of, without_basis
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import UnitRows
@@ -32,6 +32,7 @@ _GENERATIONS = 15
 _RANK_ON, _EVOLVE_ON = 2, 4  # records
 _STEPS = 6
 _ENOUGH = 0.003
+_SHAKEN = 1e300  # chi-square where a joint shook itself apart
 _GOOD = 1.5  # of chi-square a sample, up to which nothing better is sought
 
 
@@ -52,24 +53,22 @@ def scattered(samples: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     order = np.argsort(misfits(samples, fit))[::-1]
     telling = [samples[i] for i in order[:_EVOLVE_ON]]
     units = UnitRows()
-    added = [t for t in rest if t.term.acts == "force"]
 
     def model(point: Array) -> ForceModel:
         return ForceModel((*rest, FittedTerm(joint.id, 1.0, box.shape(point))), fit.model.name)
 
-    def left(point: Array, rows: Sequence[RecordRows]) -> float:
-        found = fit_model(rows, model(point), (), units=units).residual
-        if added:
-            span = np.stack([units.of_all(rows, t) for t in added])
-            found = without_span(found[None], span)[0]
-        return float(np.nan_to_num(found @ found, nan=1e300, posinf=1e300))
+    few = unexplained(telling[:_RANK_ON], rest, units)
+    more = unexplained(telling, rest, units)
+
+    def cost(point: Array) -> float:
+        return more(model(point))
 
     points = qmc.Sobol(box.size, seed=0).random_base2(_SCATTERED)
-    first = np.array([left(p, telling[:_RANK_ON]) for p in points])
+    first = np.array([few(model(p)) for p in points])
     best = np.concatenate([[box.centre], points[np.argsort(first)[: _EVOLVED - 1]]])
     evolved = differential_evolution(
-        left, Bounds(np.zeros(box.size), np.ones(box.size)), args=(telling,),
-        maxiter=_GENERATIONS, init=best, polish=False, tol=0.0, seed=0,
+        cost, Bounds(np.zeros(box.size), np.ones(box.size)), maxiter=_GENERATIONS, init=best,
+        polish=False, tol=0.0, seed=0,
     )
     other = model(evolved.x)
     found = fit_model(
@@ -77,6 +76,20 @@ def scattered(samples: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
         exact=False,
     )
     return found if found.chi2 < fit.chi2 else fit
+
+
+def unexplained(
+    rows: Sequence[RecordRows], terms: Sequence[FittedTerm], units: UnitRows
+) -> Callable[[ForceModel], float]:
+    """Return what tells the chi-square of a model with `terms`, whose added forces may change."""
+    added = [units.of_all(rows, t) for t in terms if t.term.acts == "force"]
+    basis = span_of(np.stack(added)) if added else np.zeros((0, 0))
+
+    def left(model: ForceModel) -> float:
+        found = without_basis(fit_model(rows, model, (), units=units).residual[None], basis)
+        return float(np.nan_to_num(np.sum(found**2), nan=_SHAKEN, posinf=_SHAKEN))
+
+    return left
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from scipy.sparse import csr_array, eye_array
 
 from discover.motion_fit.noise_spectrum import noise_spectrum
-from discover.motion_fit.repetition import unrepeated
+from discover.motion_fit.repetition import _changes, _without, unrepeated
 
 RATE = 300.0
 
@@ -42,12 +43,17 @@ def test_a_size_that_changes_is_no_noise():
     assert np.mean(warming.density) == pytest.approx(np.mean(steady.density), rel=0.3)
 
 
-def test_what_is_left_out_does_not_run_away():
-    """Impacts of random size lie in phases that are left out: the rest tells the noise."""
+def test_samples_that_are_left_out_do_not_run_away():
+    """What repeats may lie in them alone: nothing kept then says how it changes."""
     rng = np.random.default_rng(0)
-    time = np.arange(4 * round(RATE)) / RATE
-    noise = 0.4 * rng.standard_normal(time.size)
-    hit = np.abs(np.mod(time, 1.0) - 0.5) < 0.01
-    force = device(time) + noise + hit * 50.0 * rng.standard_normal(time.size)
-    found = noise_spectrum(time, force, 1.0, 1.0 / RATE, 2.0 * np.pi * time)
-    assert found.power == pytest.approx(0.16, rel=0.5)
+    time = np.arange(528) / 128.0
+    phase = np.mod(0.97 * time, 1.0)
+    kept = np.abs(phase - 0.5) > 0.03
+    repeated = np.where(kept, 1e-7 * rng.standard_normal(528), 5.0)
+    left = 0.4 * rng.standard_normal(528)
+    nothing = csr_array(0.0 * eye_array(528))
+    changes = _changes(nothing, time, repeated, 0.97, 4.0)
+    found = _without(left, changes, kept)
+    np.testing.assert_array_equal(found[~kept], left[~kept])
+    assert np.abs(found).max() <= 1.5 * np.abs(left).max()
+    assert np.std(found[kept]) < np.std(left[kept])

@@ -39,13 +39,13 @@ def play():
 
 
 def test_a_start_in_another_hollow_is_left(play):
-    wrong = FittedTerm("backlash", 0.6, {**PLAY, "gap": 2.5e-4, "contact": 250.0})
+    wrong = FittedTerm("backlash", 0.6, {**PLAY, "gap": 2.3e-4, "contact": 600.0})
     model = ForceModel((*DEVICE, wrong))
     stuck = fit_model(play, model, free_parameters(model), iterations=8)
     found = restarted(play, stuck)
     assert found.chi2 < 0.05 * stuck.chi2
     assert found.model.terms[2].shape["gap"] == pytest.approx(PLAY["gap"], rel=0.03)
-    assert abs(stuck.model.terms[2].shape["gap"] / PLAY["gap"] - 1.0) > 0.08
+    assert abs(stuck.model.terms[2].shape["gap"] / PLAY["gap"] - 1.0) > 0.1
 
 
 def test_a_good_start_is_kept(play):
