@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,6 +34,7 @@ _CLEARER = 0.99  # of a gap, below which another kind of delay is preferred
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
 _FEWEST = 20.0  # of chi-square, likewise
 _SEVERAL = 4  # records, of which one that stands out may have more noise than was found
+_OF_OTHERS = 60.0  # of chi-square, that an effect has to explain in the others then
 
 
 @dataclass(frozen=True)
@@ -178,14 +179,14 @@ def _next(
     doubtful = bool(done) or left.given.square > 0.0
     little = doubtful and within_doubt(rows, now, left.given, done)
     if contest.ranked[0][0] != AGREES and not _beyond(rows, now):
-        little = little or _one_stands_out(fitted, now, contest)
+        little = little or _one_stands_out(fitted, now, contest, fits)
     if left.deep and not little:
         contest, fits = _deeper(fitted, now.fit, left, contest, fits)
     name = contest.ranked[0][0]
     if name == AGREES or (name == UNKNOWN and doubtful) or not left.more:
         return _Next(contest)
     if little:
-        return _Next(contest.without(name, AGREES))
+        return _Next(contest.in_doubt(name))
     if name == UNKNOWN:
         return _Next(contest)
     tried = _tried(rows, fitted, now, left, contest, fits.get(name), name)
@@ -260,12 +261,24 @@ def _beyond(rows: Sequence[RecordRows], at: Stage) -> bool:
     )
 
 
-def _one_stands_out(fitted: Sequence[RecordRows], at: Stage, contest: Contest) -> bool:
-    """Tell whether the whole misfit beyond the noise is that of one record's lines."""
+def _one_stands_out(
+    fitted: Sequence[RecordRows], at: Stage, contest: Contest, fits: Mapping[str, ModelFit]
+) -> bool:
+    """Tell whether the misfit beyond the noise is that of one record's lines.
+
+    So it is where no more is left in all, unless what is named explains enough of the others.
+    """
     if len(fitted) < _SEVERAL:
         return False
-    beyond = misfits(fitted, at.fit) - np.array([r.target.size for r in fitted])
-    return contest.excess < float(beyond.max())
+    before = misfits(fitted, at.fit)
+    beyond = before - np.array([r.target.size for r in fitted])
+    if contest.excess >= float(beyond.max()):
+        return False
+    named = fits.get(contest.ranked[0][0])
+    if named is None:
+        return True
+    gained = before - misfits(fitted, named)
+    return float(gained.sum() - gained.max()) < _OF_OTHERS
 
 
 def _weighed(
@@ -326,7 +339,7 @@ def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     best, gap = fit, _CLEARER * pooled([record_misfit(r, fit.model) for r in rows])
     *others, delay = fit.model.terms
     for degree in (1.0, 3.0):
-        late = FittedTerm(delay.id, delay.coefficient, {"resampled": degree})
+        late = FittedTerm(delay.id, delay.coefficient, {**delay.shape, "resampled": degree})
         model = ForceModel((*others, late), fit.model.name)
         trial = fit_model(rows, model, free_parameters(model))
         now = pooled([record_misfit(r, trial.model) for r in rows])

@@ -13,6 +13,8 @@ from models.terms import TERMS
 from models.terms.trials import chosen_parameters, trial_shapes, trial_size
 
 _TESTS = 32  # of a campaign, from which a gain may have changed
+_FEW_TESTS = 4.0  # in which a gradual change is not told from a jump
+_ANOTHER_RATE = 1.05  # times the sampling interval of another record
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,8 @@ class Scales:
     """Number of the last test of the campaign; 0 where it is not known."""
     reversal: float = 0.0
     """m/s over which the baseline's friction reverses."""
+    sampling: float = 0.0
+    """Hz, highest; 0 where all records have the same."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +68,8 @@ class Variant:
 def scales_of(observations: Sequence[Observation], reversal: float = 0.0) -> Scales:
     """Return what the records cover."""
     peaks = sorted(float(np.abs(o.measured).max()) for o in observations)
+    steps = [o.motion.step for o in observations]
+    fastest, slowest = min(steps), max(steps)
     return Scales(
         speed=max(float(np.abs(o.motion.velocity).max()) for o in observations),
         displacement=max(float(np.abs(o.motion.displacement).max()) for o in observations),
@@ -73,6 +79,7 @@ def scales_of(observations: Sequence[Observation], reversal: float = 0.0) -> Sca
         omega=max(float(w.frequency) for o in observations for w in o.windows) * 2.0 * np.pi,
         tests=max(o.test for o in observations),
         reversal=reversal,
+        sampling=0.0 if slowest < _ANOTHER_RATE * fastest else 1.0 / fastest,
     )
 
 
@@ -107,6 +114,13 @@ def _spread(effect: str, scales: Scales) -> list[Variant]:
         Variant(effect, (Part(effect, s, trial_size(term, s, motion, force)),), number)
         for s in shapes
     ]
+
+
+def _between_tests(effect: str, scales: Scales) -> list[Variant]:
+    """Return an effect that grows from test to test, over the campaign or its first tests."""
+    tests = scales.tests - 1.0
+    shares = (1.0, 0.5, 0.25) if tests > _FEW_TESTS else ()
+    return [_one(effect, 1, 1e-3, from_test=2.0, over=share * tests) for share in shares]
 
 
 def _power(scales: Scales) -> list[Variant]:
@@ -157,8 +171,11 @@ def _stribeck(scales: Scales) -> list[Variant]:
 
 def _delay(scales: Scales) -> list[Variant]:
     made = ((0, 0.0), (1, 1.0), (1, 3.0))  # sampled later, or aligned from samples
+    rates = (0.0, scales.sampling) if scales.sampling else (0.0,)
     return [
-        _one("time-delay", shapes, probe=0.02 / scales.omega, resampled=degree)
+        _one("time-delay", shapes + (rate > 0.0), 0.02 / scales.omega, resampled=degree,
+             sampling=rate)
+        for rate in rates
         for shapes, degree in made
     ]
 
@@ -254,7 +271,7 @@ def _thermal(scales: Scales) -> list[Variant]:
         for t, whole in ((0.0, scales.duration), (0.3 * scales.duration, 1.0))
         for k in (2.0, 8.0, 30.0)
     ]
-    return straight + saturated
+    return straight + saturated + _between_tests("thermal-drift", scales)
 
 
 def _drift(scales: Scales) -> list[Variant]:
@@ -263,7 +280,8 @@ def _drift(scales: Scales) -> list[Variant]:
         for t in (0.0, *np.geomspace(0.02, 1.0, 5) * scales.duration)
     ]
     powers = [Part("sensor-drift", {"settling_time": 0.0, "power": p}) for p in (1.0, 2.0, 3.0)]
-    return [*settling, *(Variant("sensor-drift", tuple(powers[:n]), 0) for n in (2, 3))]
+    wandering = [Variant("sensor-drift", tuple(powers[:n]), 0) for n in (2, 3)]
+    return settling + wandering + _between_tests("sensor-drift", scales)
 
 
 def _gain(scales: Scales) -> list[Variant]:
@@ -278,7 +296,12 @@ def _gain(scales: Scales) -> list[Variant]:
     one_way = [_one("sensor-gain", 1, 1e-3, side=1.0, one_way=1.0)]
     later = range(2, scales.tests + 1, max(scales.tests // _TESTS, 1))
     changed = [_one("sensor-gain", 1, 1e-3, side=1.0, from_test=float(test)) for test in later]
-    return uniform + ranges + one_way + changed
+    settling = [
+        _one("sensor-gain", 1, 1e-3, side=1.0, settling_time=float(t * scales.duration))
+        for t in (0.03, 0.1, 0.3, 1.0, 10.0)
+    ]
+    between = _between_tests("sensor-gain", scales)
+    return uniform + ranges + one_way + changed + settling + between
 
 
 def _clipping(scales: Scales) -> list[Variant]:

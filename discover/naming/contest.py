@@ -87,6 +87,19 @@ class Contest:
         chances[effect] = 0.0
         return replace(self, probabilities=chances)
 
+    def in_doubt(self, effect: str) -> Contest:
+        """Return the contest when what an effect explains may be one record's noise.
+
+        The model then agrees with the probability that the effect had. What is left goes to all
+        names, in proportion.
+        """
+        chances = dict(self.probabilities)
+        agrees = chances.pop(AGREES)
+        doubt = chances[effect]
+        left = (1.0 - agrees - doubt) / max(1.0 - agrees, 1e-300)
+        shared = {name: left * chance for name, chance in chances.items()}
+        return replace(self, probabilities={**shared, AGREES: agrees + doubt})
+
     def without_alone(self, effect: str, other: str) -> Contest:
         """Return the contest when adding an effect without another one turns out not to help.
 
@@ -378,8 +391,9 @@ def reweighed(
         spent = sum(len(v.parts) + v.shapes for v in e.variants)
         value = -0.5 * cost(chi2 - contest.noise, informative, contest.tolerated)
         value -= 0.5 * spent * float(np.log(contest.rows))
-        value -= over_time(rows, fit.residual, found.residual, e.effects[0], steady - chi2)
-        value -= unusual(found.model.terms[-1].shape)
+        added = found.model.terms[-1]
+        value -= over_time(rows, fit.residual, found.residual, added, steady - chi2)
+        value -= unusual(added.shape)
         entries.append(replace(e, chi2=chi2, log_evidence=value))
     entries.sort(key=lambda e: -e.log_evidence)
     usual = usual_left(rows, contest.tolerated)

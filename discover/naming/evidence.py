@@ -9,10 +9,11 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.naming.candidates import Variant
-from discover.naming.forces import is_joint
+from discover.naming.forces import in_record, is_joint
 from discover.naming.rows import RecordRows
 from models.checks import Array
-from models.terms import TERMS, Shape
+from models.constitutive import FittedTerm
+from models.terms import Shape
 
 AGREES = "agrees"
 UNKNOWN = "unknown"
@@ -136,15 +137,16 @@ def _doubt(entry: Entry, left: float, usual: tuple[float, float]) -> float:
 
 
 def over_time(
-    rows: Sequence[RecordRows], before: Array, after: Array, effect: str, better: float
+    rows: Sequence[RecordRows], before: Array, after: Array, fitted: FittedTerm, better: float
 ) -> float:
     """Return the nats that an effect loses by what is seen to change while the records last.
 
     What it makes worse there refutes it, however much it explains otherwise; an effect that is a
     change over time has to show: in rows that only changes reach, or, in records that have none,
-    by how much `better` in chi-square it is than all that does not change.
+    by how much `better` in chi-square it is than all that does not change. A change from test to
+    test need not.
     """
-    follows = TERMS[effect].follows == "time"
+    follows = in_record(fitted)
     changing = np.concatenate(
         [np.arange(r.target.size) >= (r.steady or r.target.size) for r in rows]
     )

@@ -12,7 +12,7 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
 from models.terms import TERMS, Shape, Term
-from models.terms.time_delay import between_samples
+from models.terms.time_delay import between_samples, delay_at
 
 DELAY = "time-delay"
 _BEYOND = 4  # samples beyond a delay, that a spline needs
@@ -34,15 +34,32 @@ def is_joint(effect: str) -> bool:
     return TERMS[effect].acts == "input" or effect == "cavitation"
 
 
-def sets_in(observation: Observation, shape: Shape) -> bool:
-    """Tell whether what a shape says is there in a record's test already."""
-    return observation.test == 0 or observation.test >= shape.get("from_test", 0.0)
+def in_record(fitted: FittedTerm) -> bool:
+    """Tell whether a term changes while a record lasts: it then has no steady cycle."""
+    shape = fitted.shape
+    changes = fitted.term.follows == "time" or shape.get("settling_time", 0.0) > 0.0
+    return changes and shape.get("over", 0.0) == 0.0
+
+
+def share_in(observation: Observation, shape: Shape) -> float:
+    """Return how much of a term is there in a record's test: from 0 to 1, where it grows."""
+    if observation.test == 0:
+        return 1.0
+    late = observation.test - shape.get("from_test", 0.0) + 1.0
+    return float(np.clip(late / max(shape.get("over", 0.0), 1.0), 0.0, 1.0))
 
 
 def of_test(observation: Observation, model: ForceModel) -> ForceModel:
-    """Return a model without what sets in at a later test of the campaign."""
-    terms = tuple(t for t in model.terms if sets_in(observation, t.shape))
-    return model if len(terms) == len(model.terms) else ForceModel(terms, model.name)
+    """Return a model with as much of each term as there is in a record's test."""
+    shares = [share_in(observation, t.shape) for t in model.terms]
+    if all(share == 1.0 for share in shares):
+        return model
+    terms = tuple(
+        FittedTerm(t.id, share * t.coefficient, t.shape)
+        for t, share in zip(model.terms, shares, strict=True)
+        if share > 0.0
+    )
+    return ForceModel(terms, model.name)
 
 
 def _from_cycle(observation: Observation, force: Array) -> Array:
@@ -61,10 +78,16 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
     What has memory is evaluated over one steady cycle of a sine test; the rest at the samples.
     """
     model = of_test(observation, model)
+    gains = [t for t in model.terms if t.term.acts == "output" and in_record(t)]
+    if gains:
+        rest = ForceModel(tuple(t for t in model.terms if t not in gains))
+        force = model_force(observation, rest)
+        return ForceModel(tuple(gains)).changed(lambda _: force, observation.motion)
     delays = [t for t in model.terms if t.id == DELAY]
     if delays and observation.late is not None:
         rest = ForceModel(tuple(t for t in model.terms if t.id != DELAY))
-        delay = sum(t.coefficient for t in delays)
+        step = observation.motion.step
+        delay = sum(delay_at(step, t.coefficient, t.shape) for t in delays)
         degree = int(max(t.shape.get("resampled", 0.0) for t in delays))
         if degree:
             return _aligned(observation, rest, delay, degree)
@@ -101,7 +124,7 @@ def _aligned(
 
 def steady_part(model: ForceModel) -> ForceModel:
     """Return a model without what changes over time: it has a steady cycle."""
-    return ForceModel(tuple(t for t in model.terms if t.term.follows != "time"))
+    return ForceModel(tuple(t for t in model.terms if not in_record(t)))
 
 
 def change_on_cycle(observation: Observation, model: ForceModel, added: Array) -> Array:
@@ -155,7 +178,9 @@ class Trial:
 
     def on_cycle(self, term: Term, shape: Shape) -> bool:
         """Tell whether a term is evaluated over one steady cycle: all but jumps and slow change."""
-        if self.observation.cycle is None or term.id == DELAY or term.follows == "time":
+        if self.observation.cycle is None or term.id == DELAY:
+            return False
+        if in_record(FittedTerm(term.id, 1.0, shape)):
             return False
         return needs_cycle(term, shape) or "transition_speed" not in shape
 
@@ -176,15 +201,20 @@ class Trial:
             return (model_force(self.observation, late) - self._late_from) / probe
         cycle = self.observation.cycle if self.on_cycle(term, shape) else None
         motion = self.observation.motion if cycle is None else cycle
-        if not sets_in(self.observation, shape):
+        share = share_in(self.observation, shape)
+        if share == 0.0:
             return np.zeros_like(motion.displacement)
         if term.column is not None:
-            return term.column(motion, shape)
+            return share * term.column(motion, shape)
         if term.transform is None:
             raise ValueError(f"{term.id} neither adds nor changes a force")
+        if cycle is None and in_record(FittedTerm(term.id, probe, shape)):
+            whole = self._late_from
+            changed = term.transform(lambda _: whole, motion, share * probe, shape)
+            return (changed - whole) / probe
         before = self._at_samples if cycle is None or self._on_cycle is None else self._on_cycle
 
         def force_of(moved: Motion) -> Array:
             return before if moved is motion else self._steady.force(moved)
 
-        return (term.transform(force_of, motion, probe, shape) - before) / probe
+        return (term.transform(force_of, motion, share * probe, shape) - before) / probe

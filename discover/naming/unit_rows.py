@@ -6,7 +6,15 @@ from collections.abc import Hashable, Sequence
 
 import numpy as np
 
-from discover.naming.forces import DELAY, Trial, change_on_cycle, model_force, of_test, steady_part
+from discover.naming.forces import (
+    DELAY,
+    Trial,
+    change_on_cycle,
+    in_record,
+    model_force,
+    of_test,
+    steady_part,
+)
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
@@ -95,7 +103,8 @@ class UnitRows:
             return
         whole = of_test(r.observation, whole_model(r, model))
         changes = [t for t in whole.terms if t.term.acts != "force"]
-        if any(t.id == DELAY for t in changes) or (changes and r.cycle_rows is None):
+        sampled = any(t.id == DELAY or in_record(t) for t in changes)
+        if sampled or (changes and r.cycle_rows is None):
             added[:] = r.project(model_force(r.observation, whole))
         elif changes and r.cycle_rows is not None:
             with np.errstate(over="ignore", invalid="ignore"):  # a joint that shakes itself apart

@@ -1,4 +1,4 @@
-"""Sensor drift: the force channel's zero wanders during a record."""
+"""Sensor drift: the force channel's zero wanders during a record, or from test to test."""
 
 import numpy as np
 
@@ -10,8 +10,12 @@ from models.terms.term import Parameter, Shape, Term
 def column(motion: Motion, shape: Shape) -> Array:
     """Return 1 - exp(-t/T), or t to a whole `power` where `settling_time` is 0, t in s.
 
-    Several powers together make a zero that wanders.
+    Several powers together make a zero that wanders. With `over` above 0 it moves over that many
+    of a campaign's tests from `from_test` on and hardly within one: 1, and who knows the test
+    scales it.
     """
+    if shape["over"] > 0.0:
+        return np.ones_like(motion.time)
     elapsed = motion.time - motion.time[0]
     constant = shape["settling_time"]
     if constant == 0.0:
@@ -27,6 +31,8 @@ TERM = Term(
     parameters=(
         Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),
         Parameter("power", 1.0, 3.0, 1.0, ""),
+        Parameter("from_test", 0.0, 1e6, 0.0, ""),
+        Parameter("over", 0.0, 1e6, 0.0, ""),
     ),
     mistaken_for=("force-offset",),
     follows="time",

@@ -1,6 +1,7 @@
 """Sensor gain: the force channel reads too much or too little.
 
-Throughout, in a range of the amplifier, one way, or from a test on.
+Throughout, in a range of the amplifier, one way, from a test on, more with every test, or more
+and more during a record.
 """
 
 import numpy as np
@@ -15,15 +16,23 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
 
     The range reaches from a peak force of `threshold` (N) upwards, or up to it where `side` is
     negative. With `one_way` 1 the gain is that of tension (`side` 1) or compression (-1) only.
-    A gain that is there from a campaign's test number `from_test` on can't be told from the motion:
-    who knows the test leaves it out of earlier ones.
+    A gain that is there from a campaign's test number `from_test` on, and grows for `over` tests
+    until it is whole, can't be told from the motion: who knows the test scales it. With
+    `settling_time` T (s) above 0 it is 1 - exp(-t/T) of itself, t from the record's start.
     """
     force = force_of(motion)
+    if shape["settling_time"] > 0.0:
+        return force * (1.0 + coefficient * settled(motion, shape["settling_time"]))
     if shape["one_way"] > 0.0:
         return np.where(shape["side"] * force > 0.0, 1.0 + coefficient, 1.0) * force
     peak = float(np.abs(force).max())
     inside = peak >= shape["threshold"] if shape["side"] >= 0.0 else peak < shape["threshold"]
     return force * (1.0 + coefficient) if inside else force
+
+
+def settled(motion: Motion, constant: float) -> Array:
+    """Return 1 - exp(-t/T) since the record's start."""
+    return np.asarray(-np.expm1(-(motion.time - motion.time[0]) / constant))
 
 
 TERM = Term(
@@ -37,6 +46,8 @@ TERM = Term(
         Parameter("side", -1.0, 1.0, 1.0, ""),
         Parameter("one_way", 0.0, 1.0, 0.0, ""),
         Parameter("from_test", 0.0, 1e6, 0.0, ""),
+        Parameter("over", 0.0, 1e6, 0.0, ""),
+        Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),
     ),
     mistaken_for=("inertia", "viscous-damping"),
 )

@@ -1,4 +1,4 @@
-"""Thermal drift: damping that falls, or rises, as the oil warms during a record."""
+"""Thermal drift: damping changes as the oil warms, during a record or from test to test."""
 
 import numpy as np
 
@@ -15,7 +15,12 @@ def column(motion: Motion, shape: Shape) -> Array:
     `saturation` s above 0 the change is w / (1 + s w): viscosity falls exponentially with
     temperature, and with it the heat that it makes (the closed form without cooling). `saturation`
     is per unit of w.
+
+    With `over` above 0 the oil warms over that many of a campaign's tests from `from_test` on, and
+    hardly within one: w is 1, and who knows the test scales it.
     """
+    if shape["over"] > 0.0:
+        return motion.velocity
     elapsed = motion.time - motion.time[0]
     constant = shape["warming_time"]
     change = elapsed if constant == 0.0 else -np.expm1(-elapsed / constant)
@@ -33,6 +38,8 @@ TERM = Term(
         Parameter("warming_time", 0.1, 1e5, 0.0, "s", "", "log"),
         Parameter("heating", 0.0, 2.0, 0.0, ""),
         Parameter("saturation", 1e-6, 1e9, 0.0, "", "", "log"),
+        Parameter("from_test", 0.0, 1e6, 0.0, ""),
+        Parameter("over", 0.0, 1e6, 0.0, ""),
     ),
     mistaken_for=("sensor-gain", "viscous-damping"),
     follows="time",

@@ -11,17 +11,25 @@ from models.terms.term import ForceOf, Parameter, Shape, Term
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
     """Return the force as recorded `coefficient` seconds late.
 
+    With `sampling` (Hz) the delay is a number of samples, as of a converter that takes channels in
+    turn: `coefficient` at that rate, more at a lower one.
     `resampled` 0 is a channel that samples later; 1 or 3 one whose samples were aligned by lines
     or a cubic spline between them, which rounds a jump of the force, or rings beside it.
     """
-    force = force_of(motion)
+    force, delay = force_of(motion), delay_at(motion.step, coefficient, shape)
     if shape.get("resampled", 0.0) > 0.0:
-        return between_samples(force, motion.time, coefficient, int(shape["resampled"]))
+        return between_samples(force, motion.time, delay, int(shape["resampled"]))
     if motion.periodic:
         lines = np.fft.rfft(force)
         omega = 2.0 * np.pi * np.fft.rfftfreq(force.size, motion.step)
-        return np.fft.irfft(lines * np.exp(-1j * omega * coefficient), n=force.size)
-    return np.interp(motion.time - coefficient, motion.time, force)
+        return np.fft.irfft(lines * np.exp(-1j * omega * delay), n=force.size)
+    return np.interp(motion.time - delay, motion.time, force)
+
+
+def delay_at(step: float, coefficient: float, shape: Shape) -> float:
+    """Return the delay in a record of this sampling interval, both in s."""
+    sampling = shape.get("sampling", 0.0)
+    return coefficient * step * sampling if sampling > 0.0 else coefficient
 
 
 def between_samples(force: Array, time: Array, delay: float, degree: int) -> Array:
@@ -38,6 +46,9 @@ TERM = Term(
     "the force channel runs late by the coefficient",
     transform=transform,
     acts="output",
-    parameters=(Parameter("resampled", 0.0, 3.0, 0.0, ""),),
+    parameters=(
+        Parameter("resampled", 0.0, 3.0, 0.0, ""),
+        Parameter("sampling", 0.0, 1e9, 0.0, "Hz"),
+    ),
     mistaken_for=("viscous-damping", "fractional-derivative", "series-compliance"),
 )

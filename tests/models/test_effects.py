@@ -130,6 +130,20 @@ def test_drifts_start_at_nothing_and_settle():
     np.testing.assert_allclose(force(*LINEAR, gain), 1.1 * force(*LINEAR))
 
 
+def test_a_late_channel_is_later_at_a_lower_sampling_rate():
+    """Where it is some samples late; 1 ms at 1 kHz are 4 ms in a motion of 250 Hz."""
+    rate = 1.0 / MOTION.step
+    late = force(*LINEAR, FittedTerm("time-delay", 1e-3, {"sampling": 4.0 * rate}))
+    np.testing.assert_allclose(late, force(*LINEAR, FittedTerm("time-delay", 4e-3)))
+
+
+def test_a_gain_settles_after_the_record_s_start():
+    found = force(*LINEAR, FittedTerm("sensor-gain", 0.1, {"settling_time": 0.2}))
+    elapsed = MOTION.time - MOTION.time[0]
+    expected = (1.1 - 0.1 * np.exp(-elapsed / 0.2)) * force(*LINEAR)
+    np.testing.assert_allclose(found, expected)
+
+
 def test_a_zero_that_wanders_is_a_sum_of_powers_of_time():
     powers = [FittedTerm("sensor-drift", c, {"power": p}) for c, p in ((2.0, 1.0), (-30.0, 3.0))]
     elapsed = MOTION.time - MOTION.time[0]

@@ -54,6 +54,17 @@ def test_what_was_said_for_one_alone_is_lost_when_it_does_not_help():
     assert both.without_alone("stiffness", "inertia").ranked[0][0] == "inertia"
 
 
+def test_what_may_be_one_record_s_noise_stays_among_the_alternatives():
+    """The model agrees with the chance that the name had; others keep their order."""
+    found = contest(
+        entry("stiffness", left=0.02, evidence=-150.0), entry("inertia", left=0.02, evidence=-151.0)
+    )
+    doubtful = found.in_doubt("stiffness")
+    assert doubtful.probabilities[AGREES] == pytest.approx(found.probabilities["stiffness"])
+    assert sum(doubtful.probabilities.values()) == pytest.approx(1.0)
+    assert [name for name, _ in doubtful.ranked[:3]] == [AGREES, "stiffness", "inertia"]
+
+
 def test_nothing_said_for_a_pair_is_nothing_passed_on():
     found = contest(entry("stiffness", left=0.02, evidence=-150.0))
     without = found.without_alone("stiffness", "end-stop")

@@ -1,0 +1,103 @@
+"""What changes from test to test of a campaign, or differs between them by how they were sampled.
+
+Forces are closed formulas with what is hidden put on in the laboratory's own terms: oil that is
+warmer in every test, an amplifier that warms up, a converter that takes its channels in turn.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from discover.gap import close_gap
+from discover.motion_fit import observe_all
+from discover.naming.forces import model_force
+from models.constitutive import FittedTerm, ForceModel
+from tests.discover.gap_data import campaign, device
+
+MODEL = "fit:inertia,viscous-damping"
+
+
+def each(change, *, seed=4):
+    """Return the campaign with the force of every test, numbered from 1, changed."""
+    plain = campaign(device, seed=seed)
+    records = tuple(
+        replace(r, force=change(number, r)) for number, r in enumerate(plain.records, start=1)
+    )
+    return replace(plain, records=records)
+
+
+def test_oil_that_is_warmer_in_every_test_is_thermal_drift():
+    order = np.random.default_rng(3).permutation(8)
+
+    def thinner(number, r):
+        omega = 2.0 * np.pi * r.frequency
+        velocity = r.amplitude * omega * np.cos(omega * r.time)
+        return r.force - 800.0 * (1.0 - np.exp(-0.04 * (number - 1))) * velocity
+
+    plain = campaign(device, seed=4)
+    mixed = replace(plain, records=tuple(plain.records[i] for i in order))
+    records = tuple(replace(r, force=thinner(n, r)) for n, r in enumerate(mixed.records, start=1))
+    found = close_gap(replace(mixed, records=records), MODEL)
+    assert [r.effect for r in found.rounds] == ["thermal-drift"]
+    assert found.rounds[0].probability > 0.9
+    assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
+
+
+def test_a_gain_that_grows_with_every_test_is_named_as_one():
+    found = close_gap(each(lambda number, r: (1.0 + 0.02 * (number - 1)) * r.force), MODEL)
+    (only,) = found.rounds
+    assert only.effect == "sensor-gain"
+    assert only.coefficient == pytest.approx(0.14, abs=0.01)
+    assert only.parameters["over"] == 7.0
+    assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
+
+
+def test_an_amplifier_that_warms_up_in_every_test_is_a_sensor_s_gain():
+    def warming(_, r):
+        return (1.0 - 0.1 * np.exp(-r.time / (0.3 * r.time[-1] ** 0.5))) * r.force
+
+    found = close_gap(each(warming), MODEL)
+    assert found.rounds[0].effect == "sensor-gain"
+    assert found.rounds[0].parameters["settling_time"] > 0.0
+    assert found.final_held_out_gap_percent < 0.5 * found.gap_percent
+
+
+def test_a_zero_that_moves_between_tests_is_the_sensor_s():
+    found = close_gap(each(lambda number, r: r.force + 4.0 * (number - 1)), MODEL)
+    assert [r.effect for r in found.rounds] == ["sensor-drift"]
+    assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
+
+
+def test_channels_that_are_some_samples_apart_are_late_by_more_at_a_lower_rate():
+    """Sampling rates of this campaign are 125 to 1000 Hz: one delay in seconds leaves most."""
+    plain = campaign(device, seed=5)
+    records = tuple(
+        replace(r, time=r.time[2:], force=r.force[:-2], displacement=r.displacement[2:])
+        for r in plain.records
+    )
+    found = close_gap(replace(plain, records=records), MODEL)
+    (only,) = found.rounds
+    assert only.effect == "time-delay"
+    assert only.parameters["sampling"] == pytest.approx(1000.0)
+    assert only.coefficient == pytest.approx(2e-3, rel=0.01)
+    assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
+
+
+def test_a_model_of_what_changes_has_its_value_in_each_test():
+    observations = observe_all(campaign(device, noise=0.0).records, 1)
+    plain = ForceModel((FittedTerm("inertia", 120.0), FittedTerm("viscous-damping", 800.0)))
+    shape = {"from_test": 2.0, "over": 7.0}
+    gains = ForceModel((*plain.terms, FittedTerm("sensor-gain", 0.7, shape)))
+    zeros = ForceModel((*plain.terms, FittedTerm("sensor-drift", 14.0, shape)))
+    warming = FittedTerm("sensor-gain", 0.2, {"settling_time": 3.0})
+    for o in observations:
+        force = model_force(o, plain)
+        step = 1e-5 * np.abs(force).max()  # between points of the steady cycle
+        late = o.test - 1
+        np.testing.assert_allclose(model_force(o, gains), (1.0 + 0.1 * late) * force, atol=step)
+        np.testing.assert_allclose(model_force(o, zeros), force + 2.0 * late, atol=step)
+        found = model_force(o, ForceModel((*plain.terms, warming)))
+        elapsed = o.time - o.time[0]
+        expected = (1.2 - 0.2 * np.exp(-elapsed / 3.0)) * force
+        np.testing.assert_allclose(found, expected, atol=step)
