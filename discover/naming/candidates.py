@@ -202,12 +202,41 @@ def _compliance(scales: Scales) -> list[Variant]:
 
 
 def _stop(scales: Scales) -> list[Variant]:
-    return [
-        _one("end-stop", 1, gap=float(g * scales.displacement), exponent=p, side=s)
-        for g in (0.3, 0.45, 0.55, 0.65, 0.72, 0.78, 0.84, 0.89, 0.93, 0.96)
+    gaps = [g * scales.displacement for g in (0.3, 0.45, 0.55, 0.65, 0.72, 0.78, 0.84, 0.89,
+                                              0.93, 0.96)]
+    springs = [
+        _one("end-stop", 1, gap=gap, exponent=p, side=s)
+        for gap in gaps
         for p in (1.0, 1.5, 2.0, 3.0)
         for s in (0.0, 1.0, -1.0)
     ]
+    lossy = [
+        {"loss": loss / scales.speed, "form": form, "exponent": p}
+        for p in (1.0, 2.0)
+        for loss, form in ((0.5, 0.0), (3.0, 0.0), (1.0, 1.0), (10.0, 1.0))
+    ]
+    times = (0.03, 0.1, 0.3)  # of the time in which the stroke is passed
+    damped = [{"damping_time": t * scales.displacement / scales.speed} for t in times]
+    dissipating = [
+        _one("end-stop", 2, gap=gap, side=s, **{"exponent": 1.0, **more})
+        for s, some in ((0.0, gaps), (1.0, gaps[::2]), (-1.0, gaps[::2]))
+        for gap in some
+        for more in (*lossy, *damped, {"dry_loss": 0.3})
+    ]
+    uneven = [
+        Variant(
+            "end-stop",
+            (
+                Part("end-stop", {"gap": up, "exponent": 1.0, "side": 1.0}),
+                Part("end-stop", {"gap": down, "exponent": 1.0, "side": -1.0}),
+            ),
+            2,
+        )
+        for up in gaps[::2]
+        for down in gaps[::2]
+        if up != down
+    ]
+    return springs + dissipating + uneven
 
 
 def _backlash(scales: Scales) -> list[Variant]:

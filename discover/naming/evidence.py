@@ -146,7 +146,7 @@ def over_time(
     by how much `better` in chi-square it is than all that does not change. A change from test to
     test need not.
     """
-    follows = in_record(fitted)
+    follows = in_record(fitted.term, fitted.shape)
     changing = np.concatenate(
         [np.arange(r.target.size) >= (r.steady or r.target.size) for r in rows]
     )

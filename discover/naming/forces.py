@@ -34,10 +34,9 @@ def is_joint(effect: str) -> bool:
     return TERMS[effect].acts == "input" or effect == "cavitation"
 
 
-def in_record(fitted: FittedTerm) -> bool:
+def in_record(term: Term, shape: Shape) -> bool:
     """Tell whether a term changes while a record lasts: it then has no steady cycle."""
-    shape = fitted.shape
-    changes = fitted.term.follows == "time" or shape.get("settling_time", 0.0) > 0.0
+    changes = term.follows == "time" or shape.get("settling_time", 0.0) > 0.0
     return changes and shape.get("over", 0.0) == 0.0
 
 
@@ -46,7 +45,7 @@ def share_in(observation: Observation, shape: Shape) -> float:
     if observation.test == 0:
         return 1.0
     late = observation.test - shape.get("from_test", 0.0) + 1.0
-    return float(np.clip(late / max(shape.get("over", 0.0), 1.0), 0.0, 1.0))
+    return min(max(late / max(shape.get("over", 0.0), 1.0), 0.0), 1.0)
 
 
 def of_test(observation: Observation, model: ForceModel) -> ForceModel:
@@ -78,7 +77,7 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
     What has memory is evaluated over one steady cycle of a sine test; the rest at the samples.
     """
     model = of_test(observation, model)
-    gains = [t for t in model.terms if t.term.acts == "output" and in_record(t)]
+    gains = [t for t in model.terms if t.term.acts == "output" and in_record(t.term, t.shape)]
     if gains:
         rest = ForceModel(tuple(t for t in model.terms if t not in gains))
         force = model_force(observation, rest)
@@ -124,7 +123,7 @@ def _aligned(
 
 def steady_part(model: ForceModel) -> ForceModel:
     """Return a model without what changes over time: it has a steady cycle."""
-    return ForceModel(tuple(t for t in model.terms if not in_record(t)))
+    return ForceModel(tuple(t for t in model.terms if not in_record(t.term, t.shape)))
 
 
 def change_on_cycle(observation: Observation, model: ForceModel, added: Array) -> Array:
@@ -178,9 +177,7 @@ class Trial:
 
     def on_cycle(self, term: Term, shape: Shape) -> bool:
         """Tell whether a term is evaluated over one steady cycle: all but jumps and slow change."""
-        if self.observation.cycle is None or term.id == DELAY:
-            return False
-        if in_record(FittedTerm(term.id, 1.0, shape)):
+        if self.observation.cycle is None or term.id == DELAY or in_record(term, shape):
             return False
         return needs_cycle(term, shape) or "transition_speed" not in shape
 
@@ -208,7 +205,7 @@ class Trial:
             return share * term.column(motion, shape)
         if term.transform is None:
             raise ValueError(f"{term.id} neither adds nor changes a force")
-        if cycle is None and in_record(FittedTerm(term.id, probe, shape)):
+        if cycle is None and in_record(term, shape):
             whole = self._late_from
             changed = term.transform(lambda _: whole, motion, share * probe, shape)
             return (changed - whole) / probe

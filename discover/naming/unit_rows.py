@@ -103,7 +103,7 @@ class UnitRows:
             return
         whole = of_test(r.observation, whole_model(r, model))
         changes = [t for t in whole.terms if t.term.acts != "force"]
-        sampled = any(t.id == DELAY or in_record(t) for t in changes)
+        sampled = any(t.id == DELAY or in_record(t.term, t.shape) for t in changes)
         if sampled or (changes and r.cycle_rows is None):
             added[:] = r.project(model_force(r.observation, whole))
         elif changes and r.cycle_rows is not None:

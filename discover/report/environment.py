@@ -15,6 +15,7 @@ from discover.report.verdict import not_ruled_out
 from models.terms import TERMS
 
 _ALWAYS = ("order", "exponent")  # shown at their defaults too
+_COUNTED = {"over": "tests"}
 
 
 def unit(text: str) -> Markup:
@@ -49,6 +50,8 @@ def shape(term: Mapping[str, Any]) -> str:
     'order 1.48 (1.42 to 1.55)'
     >>> shape({"id": "coulomb-friction", "transition_speed": 0.002, "presliding": 0.0})
     'transition speed 0.002 m/s'
+    >>> shape({"id": "thermal-drift", "from_test": 2.0, "over": 7.0})
+    'from test 2, over 7 tests'
     """
     parts = []
     known = TERMS.get(str(term.get("id")))
@@ -57,7 +60,8 @@ def shape(term: Mapping[str, Any]) -> str:
         value = term.get(name)
         if value is None or (value == parameter.default and name not in _ALWAYS):
             continue
-        unit_text = f" {parameter.unit}" if parameter.unit else ""
+        unit = parameter.unit or _COUNTED.get(name, "")
+        unit_text = f" {unit}" if unit else ""
         text = f"{name.replace('_', ' ')} {words.significant(value, 4)}{unit_text}"
         spread = words.interval(term.get(f"{name}_interval"), 4)
         parts.append(f"{text} ({spread})" if spread else text)

@@ -23,6 +23,10 @@ _COEFFICIENTS = {
     "cubic-stiffness": CUBIC,
     "force-offset": OFFSET,
 }
+_NOT_STEPPED = {
+    "cubic-stiffness": ("closure", "span"),
+    "end-stop": ("loss", "damping_time", "dry_loss"),
+}
 _MEASURING_CHAIN = frozenset({"time-delay", "sensor-gain", "sensor-drift", "sensor-clipping"})
 _WHOLE_ORDERS = {0.0: STIFFNESS, 1.0: VISCOUS, 2.0: INERTANCE}
 
@@ -131,12 +135,12 @@ def _place(
 ) -> float | None:
     """Add a term to its row or curve; return the order of one with memory."""
     value, shape = fitted.coefficient, fitted.shape
-    for bent in ("closure", "span"):
-        if shape.get(bent, 0.0) > 0.0:
+    for name in _NOT_STEPPED.get(fitted.id, ()):
+        if shape[name] > 0.0:
             raise InputError(
-                f"{bent} of {fitted.id} in a simulation in time",
-                expected="0: a plain cube (harmonic balance takes any)",
-                found=f"{shape[bent]:g} m",
+                f"{name} of {fitted.id} in a simulation in time",
+                expected="0: its plain law (harmonic balance takes any)",
+                found=f"{shape[name]:g}",
             )
     if fitted.id in _COEFFICIENTS:
         row[_COEFFICIENTS[fitted.id]] += value

@@ -1,4 +1,4 @@
-"""End stop: a spring that is met only beyond a gap from the middle."""
+"""End stop: a spring that is met only beyond a gap from the middle, with what it dissipates."""
 
 import numpy as np
 
@@ -8,13 +8,33 @@ from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return the depth of contact to the power `exponent`, signed; `side` 0 for both ends."""
-    x, gap, power = motion.displacement, shape["gap"], shape["exponent"]
-    upper = np.maximum(x - gap, 0.0) ** power
-    lower = np.maximum(-x - gap, 0.0) ** power
-    if shape["side"] == 0.0:
-        return np.asarray(upper - lower)
-    return upper if shape["side"] > 0.0 else -lower
+    """Return the depth of contact to the power `exponent`, signed; `side` 0 for both ends.
+
+    A stop never pulls. With `loss` (s/m) its force is 1 + loss times the speed of approach of
+    itself, as a bumper's (Hunt and Crossley, 1975); with `form` 1 also 1 + the square of that on
+    approach, and itself on retreat, as a cushion's that closes an outlet. With `damping_time`
+    (s) the depth counts with that many times its rate, a damper beside the spring. With `dry_loss`
+    it pushes by that share harder on approach and more weakly on retreat, at any speed.
+    """
+    x, v, gap = motion.displacement, motion.velocity, shape["gap"]
+    total = np.zeros_like(x)
+    for end in (1.0, -1.0):
+        if end * shape["side"] >= 0.0:
+            total += end * _push(end * x - gap, end * v, shape)
+    return total
+
+
+def _push(depth: Array, approach: Array, shape: Shape) -> Array:
+    """Return what one end's stop pushes with, (N,), at a depth (m) that grows at a rate (m/s)."""
+    met = np.maximum(depth, 0.0)
+    if shape["damping_time"] > 0.0:
+        sprung = np.maximum(depth + shape["damping_time"] * approach, 0.0)
+        met = np.where(depth > 0.0, sprung, 0.0)
+    push = met ** shape["exponent"] * (1.0 + shape["dry_loss"] * np.sign(approach))
+    faster = shape["loss"] * approach
+    if shape["form"] > 0.0:
+        return np.asarray(push * (1.0 + np.maximum(faster, 0.0) ** 2))
+    return np.asarray(push * np.maximum(1.0 + faster, 0.0))
 
 
 TERM = Term(
@@ -26,6 +46,10 @@ TERM = Term(
         Parameter("gap", 0.1, 0.99, 0.8, "m", "displacement"),
         Parameter("exponent", 1.0, 3.0, 1.0, ""),
         Parameter("side", -1.0, 1.0, 0.0, ""),
+        Parameter("loss", 1e-4, 1e5, 0.0, "s/m", "", "log"),
+        Parameter("damping_time", 1e-6, 1e3, 0.0, "s", "", "log"),
+        Parameter("dry_loss", 0.01, 1.0, 0.0, ""),
+        Parameter("form", 0.0, 1.0, 0.0, ""),
     ),
     nonnegative=True,
     mistaken_for=("cubic-stiffness", "stiffness"),

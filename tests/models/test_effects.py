@@ -113,6 +113,27 @@ def test_an_end_stop_acts_only_beyond_its_gap_and_only_outwards():
     assert found.max() == pytest.approx(1e5 * 0.002, rel=1e-4)
 
 
+def test_a_stop_that_dissipates_pushes_harder_on_approach_and_never_pulls():
+    """By its laws at one depth: k d (1 + b v), k (d + T v), k d (1 + (b v)^2), k d (1 +- e)."""
+    x, v = MOTION.displacement, MOTION.velocity
+    depth, approach = np.maximum(np.abs(x) - 0.008, 0.0), v * np.sign(x)
+    inside = depth > 0.0
+    spring = 1e5 * depth * np.sign(x)
+
+    def stop(**shape):
+        return force(FittedTerm("end-stop", 1e5, {"gap": 0.008, **shape}))
+
+    bumper = spring * np.maximum(1.0 + 40.0 * approach, 0.0)
+    np.testing.assert_allclose(stop(loss=40.0), bumper, atol=1e-9)
+    damped = 1e5 * np.maximum(depth + 0.02 * approach, 0.0) * np.sign(x) * inside
+    np.testing.assert_allclose(stop(damping_time=0.02), damped, atol=1e-9)
+    cushion = spring * np.where(approach > 0.0, 1.0 + (40.0 * approach) ** 2, 1.0)
+    np.testing.assert_allclose(stop(loss=40.0, form=1.0), cushion, atol=1e-9)
+    dry = spring * (1.0 + 0.3 * np.sign(approach))
+    np.testing.assert_allclose(stop(dry_loss=0.3), dry, atol=1e-9)
+    assert (stop(loss=40.0) * x).min() == 0.0
+
+
 def test_effects_leave_their_input_unchanged_and_scale_in_time():
     motion = harmonic_motion([0.0, -0.01j, 0.001], 2.0, samples=512)
     slower = harmonic_motion([0.0, -0.01j, 0.001], 1.0, samples=512)

@@ -417,10 +417,15 @@ def test_an_end_stop_bounces_a_free_mass_back() -> None:
     assert abs(response.energy.residual) < 1e-10
 
 
-@pytest.mark.parametrize("bend", ["closure", "span"])
-def test_a_cube_that_bends_is_refused(bend: str) -> None:
-    bent = ForceModel((FittedTerm("cubic-stiffness", 1.0, {bend: 0.02}),))
-    with pytest.raises(InputError, match=f"{bend} of cubic-stiffness .* must be 0"):
+@pytest.mark.parametrize(
+    ("term", "name"),
+    [("cubic-stiffness", "closure"), ("cubic-stiffness", "span"), ("end-stop", "loss"),
+     ("end-stop", "damping_time"), ("end-stop", "dry_loss")],
+)  # fmt: skip
+def test_a_law_that_no_step_is_written_for_is_refused(term: str, name: str) -> None:
+    gap = {"gap": 1.0} if term == "end-stop" else {}
+    bent = ForceModel((FittedTerm(term, 1.0, {**gap, name: 0.02}),))
+    with pytest.raises(InputError, match=f"{name} of {term} .* must be 0"):
         simulate(oscillator(1.0, 1.0, bent), step=0.1, duration=1.0)
 
 
