@@ -25,7 +25,8 @@ from models.terms.term import Changed, ForceOf
 
 WHOLE_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
 """Of the derivative of displacement that a term is."""
-_FIRST_POWER = re.compile(r"\^1(?![\d.])")
+_FIRST_POWER = re.compile(r"\(([^()]*)\)\^1(?![\d.])|\^1(?![\d.])")
+_NO_POWER = re.compile(r" ?\([^()]*\)\^0(?![\d.])")
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,8 @@ class FittedTerm:
 
     Examples
     --------
+    >>> FittedTerm("thermal-drift", 3.0).unit, FittedTerm("thermal-drift", 3.0, {"power": 0.0}).unit
+    ('N s/m', 'N')
     >>> FittedTerm("fractional-derivative", 580.0, {"order": 1.89}).unit
     'N s^1.89/m'
     """
@@ -63,7 +66,7 @@ class FittedTerm:
     def unit(self) -> str:
         """SI unit of the coefficient."""
         text = self.term.unit.format(**{k: f"{v:.4g}" for k, v in self.shape.items()})
-        return _FIRST_POWER.sub("", text)
+        return _FIRST_POWER.sub(r"\1", _NO_POWER.sub("", text))
 
     def to_dict(self) -> dict[str, Any]:
         """Return id, coefficient, unit and shape parameters, flat as in documents.

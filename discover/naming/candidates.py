@@ -14,6 +14,7 @@ from models.terms.trials import chosen_parameters, trial_shapes, trial_size
 
 _TESTS = 32  # of a campaign, from which a gain may have changed
 _FEW_TESTS = 4.0  # in which a gradual change is not told from a jump
+_MOST_ZEROS = 64  # tests, in which each may have its own
 _ANOTHER_RATE = 1.05  # times the sampling interval of another record
 
 
@@ -33,12 +34,18 @@ class Scales:
     """s, longest record."""
     omega: float
     """rad/s, highest."""
-    tests: int = 0
-    """Number of the last test of the campaign; 0 where it is not known."""
+    numbers: tuple[int, ...] = ()
+    """Of the tests that are fitted, in the campaign; 0 where it is not known."""
     reversal: float = 0.0
     """m/s over which the baseline's friction reverses."""
     sampling: float = 0.0
     """Hz, highest; 0 where all records have the same."""
+
+
+    @property
+    def tests(self) -> int:
+        """Number of the last test of the campaign; 0 where it is not known."""
+        return max(self.numbers, default=0)
 
 
 @dataclass(frozen=True)
@@ -77,7 +84,7 @@ def scales_of(observations: Sequence[Observation], reversal: float = 0.0) -> Sca
         peaks=tuple(peaks),
         duration=max(float(o.time[-1] - o.time[0]) for o in observations),
         omega=max(float(w.frequency) for o in observations for w in o.windows) * 2.0 * np.pi,
-        tests=max(o.test for o in observations),
+        numbers=tuple(o.test for o in observations),
         reversal=reversal,
         sampling=0.0 if slowest < _ANOTHER_RATE * fastest else 1.0 / fastest,
     )
@@ -285,7 +292,14 @@ def _along(scales: Scales) -> list[Variant]:
         for place in (-0.5, 0.05, 0.5)
         for width in (0.15, 0.4)
     ]
-    return [*(Variant(name, parts, 0) for parts in sets), *local]
+    periodic = [
+        _one(
+            name, 2, power=0.0, form=3.0, place=phase * width, width=width, transition_speed=speed
+        )
+        for width in scales.displacement / np.arange(0.7, 4.0, 0.15)
+        for phase in (1.0 / 12.0, 0.25, 5.0 / 12.0)  # the sign gives the others
+    ]
+    return [*(Variant(name, parts, 0) for parts in sets), *local, *periodic]
 
 
 def _thermal(scales: Scales) -> list[Variant]:
@@ -300,7 +314,17 @@ def _thermal(scales: Scales) -> list[Variant]:
         for t, whole in ((0.0, scales.duration), (0.3 * scales.duration, 1.0))
         for k in (2.0, 8.0, 30.0)
     ]
-    return straight + saturated + _between_tests("thermal-drift", scales)
+    seals = [
+        _one("thermal-drift", 2, warming_time=float(t), power=0.0, transition_speed=scales.reversal)
+        for t in (0.0, *np.geomspace(0.02, 1.0, 5) * scales.duration)
+    ]
+    between = _between_tests("thermal-drift", scales)
+    between += [
+        _one("thermal-drift", 2, **{**v.parts[0].shape, "power": 0.0,
+                                    "transition_speed": scales.reversal})
+        for v in between
+    ]
+    return straight + saturated + seals + between
 
 
 def _drift(scales: Scales) -> list[Variant]:
@@ -310,7 +334,20 @@ def _drift(scales: Scales) -> list[Variant]:
     ]
     powers = [Part("sensor-drift", {"settling_time": 0.0, "power": p}) for p in (1.0, 2.0, 3.0)]
     wandering = [Variant("sensor-drift", tuple(powers[:n]), 0) for n in (2, 3)]
-    return settling + wandering + _between_tests("sensor-drift", scales)
+    return settling + wandering + _between_tests("sensor-drift", scales) + _each_its_own(scales)
+
+
+def _each_its_own(scales: Scales) -> list[Variant]:
+    """Return a zero that is another one in every test, and one that wanders in each on its own."""
+    if not _FEW_TESTS < len(scales.numbers) <= _MOST_ZEROS or 0 in scales.numbers:
+        return []
+    zeros = [Part("sensor-drift", {"over": 1.0, "only": float(n)}) for n in scales.numbers]
+    moving = [
+        [Part("sensor-drift", {"power": power, "only": float(n)}) for n in scales.numbers]
+        for power in (1.0, 2.0)
+    ]
+    sets = (zeros, [*zeros, *moving[0]], [*zeros, *moving[0], *moving[1]])
+    return [Variant("sensor-drift", tuple(some), 0) for some in sets]
 
 
 def _gain(scales: Scales) -> list[Variant]:

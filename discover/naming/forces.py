@@ -42,6 +42,8 @@ def in_record(term: Term, shape: Shape) -> bool:
 
 def share_in(observation: Observation, shape: Shape) -> float:
     """Return how much of a term is there in a record's test: from 0 to 1, where it grows."""
+    if shape.get("only", 0.0) > 0.0 and observation.test != shape["only"]:
+        return 0.0
     if observation.test == 0:
         return 1.0
     late = observation.test - shape.get("from_test", 0.0) + 1.0

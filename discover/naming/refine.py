@@ -21,6 +21,7 @@ from models.terms import TERMS
 _LEADING = 6
 _KINDS = (6, 4, 2, 1)  # of shapes that are fitted, of the first effect, the second, ...
 _FIRST_STEPS = 2
+_ENDED = 2  # kinds of the first effect's force, that are fitted to the end
 _ITERATIONS = 8
 _ENOUGH = 0.02
 _SPRING = 8.0  # times the play, that its flanks give under the greatest force
@@ -92,8 +93,10 @@ def refine(
         models = [extended(fit.model, start) for start in starts]
         if len(models) > 1:
             begun = [_fit(rows, m, units, _FIRST_STEPS, frozen) for m in models]
-            models = [min(begun, key=lambda f: np.nan_to_num(f.chi2, nan=np.inf)).model]
-        found = _fit(rows, models[0], units, _ITERATIONS, frozen)
+            begun.sort(key=_dearness)
+            several = place == 0 and TERMS[name].acts == "force"
+            models = [f.model for f in begun[: _ENDED if several else 1]]
+        found = min((_fit(rows, m, units, _ITERATIONS, frozen) for m in models), key=_dearness)
         if not np.isfinite(found.chi2):
             continue
         if TERMS[name].nonnegative and found.model.terms[-1].coefficient <= 0.0:
@@ -109,6 +112,12 @@ def refine(
         entries=tuple(e for e in contest.entries if not set(passed_over) & set(e.effects)),
     )
     return reweighed(rows, contest, fit, fits, effects), fits
+
+
+def _dearness(fit: ModelFit) -> float:
+    """Return the chi-square of a fit and what its parameters cost: the least is the best."""
+    spent = len(fit.parameters) * float(np.log(fit.residual.size))
+    return float(np.nan_to_num(fit.chi2, nan=np.inf)) + spent
 
 
 def _hopeless(entry: Entry, contest: Contest) -> bool:

@@ -6,12 +6,15 @@ from models.checks import Array
 from models.motion import Motion
 from models.terms.term import Parameter, Shape, Term
 
+_STEP, _WAVE = 2.0, 3.0
+
 
 def column(motion: Motion, shape: Shape) -> Array:
     """Return sign v times x to a whole `power`, reversing as friction does.
 
     With a `width` (m) it is only near a `place` (m), by a Gaussian bump, or (`form` 2) beyond it,
-    by a smooth step.
+    by a smooth step, or (`form` 3) a cosine of that period about it, as of a thread or of marks
+    that a tool left.
     """
     speed = shape["transition_speed"]
     v, x = motion.velocity, motion.displacement
@@ -20,7 +23,9 @@ def column(motion: Motion, shape: Shape) -> Array:
     if shape["width"] == 0.0:
         return np.asarray(along)
     beyond = (x - shape["place"]) / shape["width"]
-    local = 0.5 + 0.5 * np.tanh(beyond) if shape["form"] == 2.0 else np.exp(-(beyond**2))
+    if shape["form"] == _WAVE:
+        return np.asarray(along * np.cos(2.0 * np.pi * beyond))
+    local = 0.5 + 0.5 * np.tanh(beyond) if shape["form"] == _STEP else np.exp(-(beyond**2))
     return np.asarray(along * local)
 
 
@@ -31,7 +36,7 @@ TERM = Term(
     column,
     parameters=(
         Parameter("power", 0.0, 4.0, 1.0, ""),
-        Parameter("form", 0.0, 2.0, 0.0, ""),
+        Parameter("form", 0.0, 3.0, 0.0, ""),
         Parameter("place", -1.0, 1.0, 0.0, "m", "displacement"),
         Parameter("width", 0.05, 1.0, 0.0, "m", "displacement", "log"),
         Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),

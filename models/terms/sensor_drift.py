@@ -12,7 +12,7 @@ def column(motion: Motion, shape: Shape) -> Array:
 
     Several powers together make a zero that wanders. With `over` above 0 it moves over that many
     of a campaign's tests from `from_test` on and hardly within one: 1, and who knows the test
-    scales it.
+    scales it. With `only` it is there in that test and no other.
     """
     if shape["over"] > 0.0:
         return np.ones_like(motion.time)
@@ -33,6 +33,7 @@ TERM = Term(
         Parameter("power", 1.0, 3.0, 1.0, ""),
         Parameter("from_test", 0.0, 1e6, 0.0, ""),
         Parameter("over", 0.0, 1e6, 0.0, ""),
+        Parameter("only", 0.0, 1e6, 0.0, ""),
     ),
     mistaken_for=("force-offset",),
     follows="time",

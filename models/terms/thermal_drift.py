@@ -8,8 +8,10 @@ from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return velocity times w = 1 - exp(-t/T), m/s: the change of viscous damping with time.
+    """Return |v|^p sign v times w = 1 - exp(-t/T): the change of damping with time.
 
+    `power` p is 1 for the oil's viscous damping, 0 for the friction of seals, which then reverses
+    over `transition_speed` (a jump where that is 0).
     `warming_time` 0 stands for a straight change, w = t. With `heating` above 0 w grows with the
     record's mean square speed, in (m/s)^2, to that power: dissipation warms the oil. With
     `saturation` s above 0 the change is w / (1 + s w): viscosity falls exponentially with
@@ -19,25 +21,37 @@ def column(motion: Motion, shape: Shape) -> Array:
     With `over` above 0 the oil warms over that many of a campaign's tests from `from_test` on, and
     hardly within one: w is 1, and who knows the test scales it.
     """
+    damping = _damping(motion.velocity, shape)
     if shape["over"] > 0.0:
-        return motion.velocity
+        return damping
     elapsed = motion.time - motion.time[0]
     constant = shape["warming_time"]
     change = elapsed if constant == 0.0 else -np.expm1(-elapsed / constant)
     warmed = change * float(np.mean(motion.velocity**2)) ** shape["heating"]
     rate = shape["saturation"]
-    return np.asarray(motion.velocity * warmed / (1.0 + rate * warmed))
+    return np.asarray(damping * warmed / (1.0 + rate * warmed))
+
+
+def _damping(velocity: Array, shape: Shape) -> Array:
+    """Return what the oil's temperature changes, (m/s)^p."""
+    if shape["power"] == 1.0:
+        return velocity
+    speed = shape["transition_speed"]
+    direction = np.sign(velocity) if speed == 0.0 else np.tanh(velocity / speed)
+    return np.asarray(direction * np.abs(velocity) ** shape["power"])
 
 
 TERM = Term(
     "thermal-drift",
-    "N s/m",
-    "c times velocity times 1 - exp(-t/T), t from the record's start",
+    "N (s/m)^{power}",
+    "c times velocity, or the sign of it, times 1 - exp(-t/T), t from the record's start",
     column,
     parameters=(
         Parameter("warming_time", 0.1, 1e5, 0.0, "s", "", "log"),
         Parameter("heating", 0.0, 2.0, 0.0, ""),
         Parameter("saturation", 1e-6, 1e9, 0.0, "", "", "log"),
+        Parameter("power", 0.0, 2.0, 1.0, ""),
+        Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
         Parameter("from_test", 0.0, 1e6, 0.0, ""),
         Parameter("over", 0.0, 1e6, 0.0, ""),
     ),

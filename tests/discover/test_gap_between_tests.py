@@ -69,6 +69,36 @@ def test_a_zero_that_moves_between_tests_is_the_sensor_s():
     assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
 
 
+def test_a_zero_that_is_another_one_in_every_test_is_the_sensor_s_and_predicts_no_other_test():
+    zeros = 12.0 * np.random.default_rng(2).standard_normal(8)
+    found = close_gap(each(lambda number, r: r.force + zeros[number - 1]), MODEL)
+    assert [r.effect for r in found.rounds] == ["sensor-drift"]
+    stated = [t.fitted.coefficient for t in found.mended if t.fitted.id == "sensor-drift"]
+    np.testing.assert_allclose(stated, zeros, atol=1.0)
+    assert found.final_gap_percent < 1.1 * found.noise_percent
+    assert found.final_held_out_gap_percent > 3.0 * found.noise_percent
+
+
+def test_one_slope_in_all_tests_is_one_number():
+    found = close_gap(each(lambda _, r: r.force + 3.0 * r.time), MODEL)
+    (slope,) = [t.fitted for t in found.mended if t.fitted.id == "sensor-drift"]
+    assert slope.coefficient == pytest.approx(3.0, rel=0.05)
+    assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
+
+
+def test_seals_whose_friction_falls_as_they_warm_are_thermal_drift():
+    def rubbing(_, r):
+        omega = 2.0 * np.pi * r.frequency
+        velocity = r.amplitude * omega * np.cos(omega * r.time)
+        return r.force + 15.0 * (1.0 + np.exp(-r.time / 3.0)) * np.tanh(velocity / 3e-4)
+
+    found = close_gap(each(rubbing), MODEL + ",coulomb-friction")
+    assert [r.effect for r in found.rounds] == ["thermal-drift"]
+    assert found.rounds[0].parameters["power"] == 0.0
+    assert found.rounds[0].unit == "N"
+    assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
+
+
 def test_channels_that_are_some_samples_apart_are_late_by_more_at_a_lower_rate():
     """Sampling rates of this campaign are 125 to 1000 Hz: one delay in seconds leaves most."""
     plain = campaign(device, seed=5)

@@ -58,6 +58,19 @@ def test_friction_that_differs_from_test_to_test_is_no_warming():
     assert found.rounds == ()
 
 
+@pytest.mark.parametrize("phase", [0.0, 0.7])
+def test_friction_of_a_thread_s_period_is_friction_along_the_stroke(phase):
+    def law(t, x, v, a):
+        marks = 12.0 * np.sin(2.0 * np.pi * x / 0.007 + phase)
+        return device(t, x, v, a) + (30.0 + marks) * np.sign(v)
+
+    found = close_gap(campaign(law), "fit:inertia,viscous-damping,coulomb-friction")
+    (only,) = found.rounds
+    assert only.effect == "position-dependent-friction"
+    assert only.parameters["width"] == pytest.approx(0.007, rel=0.01)
+    assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
+
+
 def test_warming_that_shows_inside_the_tests_is_named():
     """The oil warms by what it dissipates and thins exponentially: no cooling, stepped in time."""
 

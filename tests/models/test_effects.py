@@ -158,6 +158,13 @@ def test_a_late_channel_is_later_at_a_lower_sampling_rate():
     np.testing.assert_allclose(late, force(*LINEAR, FittedTerm("time-delay", 4e-3)))
 
 
+def test_marks_of_a_tool_are_a_cosine_along_the_stroke():
+    x, v = MOTION.displacement, MOTION.velocity
+    shape = {"power": 0.0, "form": 3.0, "width": 0.004, "place": 0.001}
+    found = force(FittedTerm("position-dependent-friction", 7.0, shape))
+    np.testing.assert_allclose(found, 7.0 * np.sin(2.0 * np.pi * x / 0.004) * np.sign(v), atol=1e-9)
+
+
 def test_a_gain_settles_after_the_record_s_start():
     found = force(*LINEAR, FittedTerm("sensor-gain", 0.1, {"settling_time": 0.2}))
     elapsed = MOTION.time - MOTION.time[0]
