@@ -197,6 +197,16 @@ def _spikes(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding
 
 def _not_met(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding]:
     """Return which records that were not fitted are met worse than those that were."""
+    zeros = [t.coefficient for t in at.fit.model.terms if t.shape.get("only", 0.0) > 0.0]
+    if zeros:
+        return [
+            Finding(
+                "warning",
+                "The force channel's zero is another one in every test (the greatest change is"
+                f" {max(zeros, key=abs):.3g} N). No model predicts it, so records that were not"
+                " fitted keep their gap: zero the channel before each test.",
+            )
+        ]
     marked = [r for r in rows if r.observation.held_out]
     seen = [r for r in rows if not r.observation.held_out]
     met = seen_gap(rows, at) / max(noise, 1e-300)

@@ -41,7 +41,6 @@ class Scales:
     sampling: float = 0.0
     """Hz, highest; 0 where all records have the same."""
 
-
     @property
     def tests(self) -> int:
         """Number of the last test of the campaign; 0 where it is not known."""

@@ -16,6 +16,7 @@ from models.terms import TERMS
 
 _ALWAYS = ("order", "exponent")  # shown at their defaults too
 _COUNTED = {"over": "tests"}
+_OF_A_TEST = ("over", "only")
 
 
 def unit(text: str) -> Markup:
@@ -52,19 +53,26 @@ def shape(term: Mapping[str, Any]) -> str:
     'transition speed 0.002 m/s'
     >>> shape({"id": "thermal-drift", "from_test": 2.0, "over": 7.0})
     'from test 2, over 7 tests'
+    >>> shape({"id": "sensor-drift", "over": 1.0, "only": 3.0})
+    'in test 3 only'
     """
     parts = []
     known = TERMS.get(str(term.get("id")))
+    alone = float(term.get("only") or 0.0)
     for parameter in () if known is None else known.parameters:
         name = parameter.name
         value = term.get(name)
         if value is None or (value == parameter.default and name not in _ALWAYS):
+            continue
+        if alone and name in _OF_A_TEST:
             continue
         unit = parameter.unit or _COUNTED.get(name, "")
         unit_text = f" {unit}" if unit else ""
         text = f"{name.replace('_', ' ')} {words.significant(value, 4)}{unit_text}"
         spread = words.interval(term.get(f"{name}_interval"), 4)
         parts.append(f"{text} ({spread})" if spread else text)
+    if alone:
+        parts.append(f"in test {alone:g} only")
     return ", ".join(parts)
 
 

@@ -22,17 +22,14 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     """
     force = force_of(motion)
     if shape["settling_time"] > 0.0:
-        return force * (1.0 + coefficient * settled(motion, shape["settling_time"]))
+        elapsed = motion.time - motion.time[0]
+        settled = -np.expm1(-elapsed / shape["settling_time"])
+        return np.asarray(force * (1.0 + coefficient * settled))
     if shape["one_way"] > 0.0:
         return np.where(shape["side"] * force > 0.0, 1.0 + coefficient, 1.0) * force
     peak = float(np.abs(force).max())
     inside = peak >= shape["threshold"] if shape["side"] >= 0.0 else peak < shape["threshold"]
     return force * (1.0 + coefficient) if inside else force
-
-
-def settled(motion: Motion, constant: float) -> Array:
-    """Return 1 - exp(-t/T) since the record's start."""
-    return np.asarray(-np.expm1(-(motion.time - motion.time[0]) / constant))
 
 
 TERM = Term(

@@ -77,6 +77,8 @@ def test_a_zero_that_is_another_one_in_every_test_is_the_sensor_s_and_predicts_n
     np.testing.assert_allclose(stated, zeros, atol=1.0)
     assert found.final_gap_percent < 1.1 * found.noise_percent
     assert found.final_held_out_gap_percent > 3.0 * found.noise_percent
+    (warning,) = [f.text for f in found.findings if f.level == "warning"]
+    assert "zero the channel before each test" in warning
 
 
 def test_one_slope_in_all_tests_is_one_number():
