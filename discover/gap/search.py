@@ -13,6 +13,7 @@ from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.doubt import Doubt, doubt_of_added, share_of, within_doubt
 from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
 from discover.naming.ahead import every_joint, pairs_ahead
+from discover.naming.columns import CandidateColumns
 from discover.naming.contest import Contest, leaves_much, reweighed, run_contest
 from discover.naming.evidence import AGREES, UNKNOWN
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
@@ -106,13 +107,14 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
     given = doubt_of_added(baseline, fit)
     doubt, members, curves = given.by_record, 0, True
     deep, weighed = True, None
+    columns = CandidateColumns(fitted)
     while True:
         now = rounds[-1].after if rounds else first
         present = {t.id for t in now.fit.model.terms}
         open_effects = [e for e in effects if e not in present and e not in tried]
         if weighed is None:
-            weighed = _weighed(fitted, now.fit, open_effects, doubt)
-        left = _Open(open_effects, rounds, len(rounds) < most, curves, deep, given)
+            weighed = _weighed(fitted, now.fit, open_effects, doubt, columns)
+        left = _Open(open_effects, rounds, len(rounds) < most, curves, deep, given, columns)
         found = _next(rows, fitted, now, left, *weighed)
         if found.added is not None:
             curves, deep, weighed = True, False, None
@@ -153,6 +155,8 @@ class _Open:
     """Whether joints and pairs are searched before what is left is called unknown."""
     given: Doubt
     """Of effects that the model had been given by an earlier search."""
+    columns: CandidateColumns
+    """Of the records that are fitted."""
 
 
 @dataclass(frozen=True)
@@ -282,7 +286,11 @@ def _one_stands_out(
 
 
 def _weighed(
-    rows: Sequence[RecordRows], fit: ModelFit, effects: Sequence[str], doubt: Array
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    effects: Sequence[str],
+    doubt: Array,
+    columns: CandidateColumns,
 ) -> tuple[Contest, dict[str, ModelFit]]:
     """Return the contest beside a fit, and the fits of those that lead.
 
@@ -290,7 +298,8 @@ def _weighed(
     """
     beyond = misfits(rows, fit) - np.array([r.target.size for r in rows])
     tolerated = float(np.sum(np.minimum(doubt, np.maximum(beyond, 0.0))))
-    return refine(rows, fit, run_contest(rows, fit, effects, tolerated=tolerated), effects)
+    contest = run_contest(rows, fit, effects, tolerated=tolerated, columns=columns)
+    return refine(rows, fit, contest, effects)
 
 
 def _deeper(
@@ -308,7 +317,7 @@ def _deeper(
         contest = reweighed(rows, contest, fit, fits, left.effects)
     name = contest.ranked[0][0]
     if not left.rounds and (name == UNKNOWN or leaves_much(rows, contest, name)):
-        found = pairs_ahead(rows, contest, fits, left.effects)
+        found = pairs_ahead(rows, contest, fits, left.effects, left.columns)
         contest = replace(contest, entries=(*contest.entries, *found))
         contest = reweighed(rows, contest, fit, fits, left.effects)
     return contest, fits

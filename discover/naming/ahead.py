@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from discover.naming.columns import CandidateColumns
 from discover.naming.contest import Contest, pair_evidence, run_contest
 from discover.naming.evidence import Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters, kind_of
@@ -61,6 +62,7 @@ def pairs_ahead(
     contest: Contest,
     fits: Mapping[str, ModelFit],
     effects: Sequence[str],
+    columns: CandidateColumns | None = None,
 ) -> tuple[Entry, ...]:
     """Return pairs that leave much less than any effect alone, each fitted for real.
 
@@ -76,6 +78,8 @@ def pairs_ahead(
         The fit with each leading effect.
     effects : sequence of str
         Ids that were weighed.
+    columns : CandidateColumns, optional
+        Of these records, where other contests share them.
     """
     left_by = {name: fit.chi2 - contest.noise for name, fit in fits.items()}
     begun_by = [name for name in fits if left_by[name] <= _BEGUN * contest.excess]
@@ -90,7 +94,7 @@ def pairs_ahead(
             for other in others
         }
         begun = _settled(rows, fits[name])
-        second = run_contest(rows, begun, others)
+        second = run_contest(rows, begun, others, columns=columns)
         near = [
             e.effects[0]
             for e in second.entries

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 
 import numpy as np
 
-from discover.naming.candidates import Variant
+from discover.naming.candidates import Part, Variant
 from discover.naming.forces import Trial
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import whole_model
@@ -14,15 +14,61 @@ from models.checks import Array
 from models.constitutive import ForceModel
 from models.terms import TERMS
 
+_MOST_KEPT = 256e6  # bytes
+
+
+class CandidateColumns:
+    """Whitened rows of candidates on the same records: what adds a force is evaluated once.
+
+    What changes the force depends on the model beside it, and is evaluated anew.
+    """
+
+    def __init__(self, rows: Sequence[RecordRows]) -> None:
+        self._rows = tuple(rows)
+        self._known: dict[Hashable, Array] = {}
+
+    def of(self, model: ForceModel, chosen: Sequence[Variant]) -> Array:
+        """Return the whitened rows of every part of every variant beside a model, (C, R).
+
+        Where one overflows its row is zero: no candidate.
+        """
+        parts = [p for v in chosen for p in v.parts]
+        keys = [_key(p) for p in parts]
+        size = sum(r.target.size for r in self._rows)
+        result = np.empty((len(parts), size))
+        first: dict[Hashable, int] = {}
+        for i, key in enumerate(keys):
+            if key in self._known:
+                result[i] = self._known[key]
+            else:
+                first.setdefault(i if key is None else key, i)
+        new = list(first.values())
+        if new:
+            result[new] = _columns(self._rows, model, [parts[i] for i in new])
+        for i, key in enumerate(keys):
+            if key in first:
+                result[i] = result[first[key]]
+        for key, i in first.items():
+            if keys[i] is not None and (len(self._known) + 1) * size * 8.0 < _MOST_KEPT:
+                self._known[key] = result[i].copy()
+        return result
+
 
 def candidate_columns(
     rows: Sequence[RecordRows], model: ForceModel, chosen: Sequence[Variant]
 ) -> Array:
-    """Return the whitened rows of every part of every variant, (C, R).
+    """Return the whitened rows of every part of every variant, (C, R), that are used once."""
+    return _columns(rows, model, [p for v in chosen for p in v.parts])
 
-    Where one overflows its row is zero: no candidate.
-    """
-    parts = [p for v in chosen for p in v.parts]
+
+def _key(part: Part) -> Hashable:
+    """Return what tells a part that adds a force from others; None where it changes one."""
+    return (part.id, tuple(part.shape.items())) if TERMS[part.id].column is not None else None
+
+
+def _columns(
+    rows: Sequence[RecordRows], model: ForceModel, parts: Sequence[Part]
+) -> Array:
     terms = [TERMS[p.id] for p in parts]
     shapes = [t.shape(p.shape) for t, p in zip(terms, parts, strict=True)]
     blocks = []

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from discover.naming.candidates import Variant, scales_of, variants
-from discover.naming.columns import candidate_columns, without_span
+from discover.naming.columns import CandidateColumns, candidate_columns, without_span
 from discover.naming.evidence import (
     AGREES,
     FEW,
@@ -132,6 +132,7 @@ def run_contest(
     effects: Sequence[str],
     *,
     tolerated: float = 0.0,
+    columns: CandidateColumns | None = None,
 ) -> Contest:
     """Weigh every effect beside a fitted model.
 
@@ -145,6 +146,8 @@ def run_contest(
         Ids to weigh.
     tolerated : float
         Chi-square by which the shapes of effects that were added before may be wrong.
+    columns : CandidateColumns, optional
+        Of the same records, where several contests share them.
     """
     present = [t for r in rows[:1] for t in (*r.held, *fit.model.terms)]
     friction = (t.shape["transition_speed"] for t in present if t.id == "coulomb-friction")
@@ -158,7 +161,8 @@ def run_contest(
     dof = size - len(fit.parameters)
     noise = dof + _NOISE_DEVIATIONS * np.sqrt(2.0 * dof) * 0.5 + _NOISE_UNCERTAINTY * dof
     noise += tolerated
-    raw = candidate_columns(rows, fit.model, chosen)
+    columns = CandidateColumns(rows) if columns is None else columns
+    raw = columns.of(fit.model, chosen)
     tangents = np.concatenate([fit.tangents, reversal_doubt(rows, fit.model)])
     freed = without_span(raw, tangents)
     target = without_span(fit.residual[None], tangents)[0]
