@@ -16,6 +16,7 @@ from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import whole_model
 from discover.records import Finding
+from models.constitutive import ForceModel
 
 _WORSE = 1.02  # of a gap that was not fitted, from which a round is said to raise it
 _NOISY = 20.0  # percent of a record's force
@@ -23,6 +24,10 @@ _SINGLE = 0.01  # of a record's samples
 _MOST = 0.5  # of what is left
 _NOT_MET = 1.5  # times the noise, and what fitted records are off by
 _FURTHER = 1.02  # of the fitted records' range
+_OWN = (
+    ("sensor-drift", "The force channel's zero", "zero the channel before each test"),
+    ("time-delay", "The delay between the channels", "start both by one trigger, on one clock"),
+)
 _NOT_THE_LINES = 1.5  # times the noise, from which a gap is not what the tests' lines show
 
 
@@ -197,16 +202,9 @@ def _spikes(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding
 
 def _not_met(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding]:
     """Return which records that were not fitted are met worse than those that were."""
-    zeros = [t.coefficient for t in at.fit.model.terms if t.shape.get("only", 0.0) > 0.0]
-    if zeros:
-        return [
-            Finding(
-                "warning",
-                "The force channel's zero is another one in every test (the greatest change is"
-                f" {max(zeros, key=abs):.3g} N). No model predicts it, so records that were not"
-                " fitted keep their gap: zero the channel before each test.",
-            )
-        ]
+    of_each = _of_every_test(at.fit.model)
+    if of_each:
+        return of_each
     marked = [r for r in rows if r.observation.held_out]
     seen = [r for r in rows if not r.observation.held_out]
     met = seen_gap(rows, at) / max(noise, 1e-300)
@@ -240,6 +238,24 @@ def _not_met(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Findin
             worst.observation.file,
         )
     ]
+
+
+def _of_every_test(model: ForceModel) -> list[Finding]:
+    """Return what is another one in every test, and so keeps others' gap as it is."""
+    result = []
+    for effect, what, remedy in _OWN:
+        terms = [t for t in model.terms if t.id == effect and t.shape["only"] > 0.0]
+        if terms:
+            values = [t.coefficient for t in terms]
+            result.append(
+                Finding(
+                    "warning",
+                    f"{what} is another one in every test (from {min(values):.3g} to"
+                    f" {max(values):.3g} {terms[0].unit}). No model predicts it, so records that"
+                    f" were not fitted keep their gap: {remedy}.",
+                )
+            )
+    return result
 
 
 def _beyond_fitted(unseen: RecordRows, seen: Sequence[RecordRows]) -> str:

@@ -14,7 +14,7 @@ from models.terms.trials import chosen_parameters, trial_shapes, trial_size
 
 _TESTS = 32  # of a campaign, from which a gain may have changed
 _FEW_TESTS = 4.0  # in which a gradual change is not told from a jump
-_MOST_ZEROS = 64  # tests, in which each may have its own
+_MOST_OWN = 64  # tests, of which each may have its own value
 _ANOTHER_RATE = 1.05  # times the sampling interval of another record
 
 
@@ -129,6 +129,17 @@ def _between_tests(effect: str, scales: Scales) -> list[Variant]:
     return [_one(effect, 1, 1e-3, from_test=2.0, over=share * tests) for share in shares]
 
 
+def _numbers(scales: Scales) -> tuple[float, ...]:
+    """Return the numbers of tests of which each may have its own value; none where they are few."""
+    several = _FEW_TESTS < len(scales.numbers) <= _MOST_OWN and 0 not in scales.numbers
+    return tuple(float(n) for n in scales.numbers) if several else ()
+
+
+def _each_its_own(sets: Sequence[Sequence[Part]]) -> list[Variant]:
+    """Return what has a value of its own in every test: one term for each."""
+    return [Variant(parts[0].id, tuple(parts), 0) for parts in sets if parts]
+
+
 def _power(scales: Scales) -> list[Variant]:
     grid = [0.25, 0.35, 0.5, 0.65, 0.8, 1.2, 1.35, 1.5, 1.65, 1.75, 2.3, 2.6, 3.0]
     return [_one("power-law-damping", 1, exponent=p) for p in grid]
@@ -178,12 +189,13 @@ def _stribeck(scales: Scales) -> list[Variant]:
 def _delay(scales: Scales) -> list[Variant]:
     made = ((0, 0.0), (1, 1.0), (1, 3.0))  # sampled later, or aligned from samples
     rates = (0.0, scales.sampling) if scales.sampling else (0.0,)
+    probe = 0.02 / scales.omega
     return [
-        _one("time-delay", shapes + (rate > 0.0), 0.02 / scales.omega, resampled=degree,
+        _one("time-delay", shapes + (rate > 0.0), probe, resampled=degree,
              sampling=rate)
         for rate in rates
         for shapes, degree in made
-    ]
+    ] + _each_its_own([[Part("time-delay", {"only": n}, probe) for n in _numbers(scales)]])
 
 
 def _compliance(scales: Scales) -> list[Variant]:
@@ -333,20 +345,12 @@ def _drift(scales: Scales) -> list[Variant]:
     ]
     powers = [Part("sensor-drift", {"settling_time": 0.0, "power": p}) for p in (1.0, 2.0, 3.0)]
     wandering = [Variant("sensor-drift", tuple(powers[:n]), 0) for n in (2, 3)]
-    return settling + wandering + _between_tests("sensor-drift", scales) + _each_its_own(scales)
-
-
-def _each_its_own(scales: Scales) -> list[Variant]:
-    """Return a zero that is another one in every test, and one that wanders in each on its own."""
-    if not _FEW_TESTS < len(scales.numbers) <= _MOST_ZEROS or 0 in scales.numbers:
-        return []
-    zeros = [Part("sensor-drift", {"over": 1.0, "only": float(n)}) for n in scales.numbers]
-    moving = [
-        [Part("sensor-drift", {"power": power, "only": float(n)}) for n in scales.numbers]
-        for power in (1.0, 2.0)
-    ]
-    sets = (zeros, [*zeros, *moving[0]], [*zeros, *moving[0], *moving[1]])
-    return [Variant("sensor-drift", tuple(some), 0) for some in sets]
+    numbers = _numbers(scales)
+    zeros = [Part("sensor-drift", {"over": 1.0, "only": n}) for n in numbers]
+    slopes = [Part("sensor-drift", {"power": 1.0, "only": n}) for n in numbers]
+    bends = [Part("sensor-drift", {"power": 2.0, "only": n}) for n in numbers]
+    own = _each_its_own([zeros, zeros + slopes, zeros + slopes + bends])
+    return settling + wandering + _between_tests("sensor-drift", scales) + own
 
 
 def _gain(scales: Scales) -> list[Variant]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.naming.forces import DELAY, is_joint
+from discover.naming.forces import DELAY, is_joint, share_in
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import UnitRows
 from models.checks import Array
@@ -143,6 +143,9 @@ def _tangents(
         if parameter.shape in ("order", "exponent"):
             step = -step  # stays below the upper bound
         other = with_values(model, [parameter], np.array([value + step]))
+        if fitted.shape.get("only", 0.0) > 0.0 and not linear:
+            result[index] = _in_one_test(rows, units, fitted, other, at) / step
+            continue
         if linear:
             moved = other.terms[parameter.term]
             change = fitted.coefficient * (units.of_all(rows, moved) - units.of_all(rows, fitted))
@@ -150,6 +153,18 @@ def _tangents(
             change = units.of_model(rows, other) - at
         result[index] = np.where(np.isfinite(change), change, 0.0) / step
     return result
+
+
+def _in_one_test(
+    rows: Sequence[RecordRows], units: UnitRows, fitted: FittedTerm, other: ForceModel, at: Array
+) -> Array:
+    """Return the change (R,) to another model that differs in a term of one test only."""
+    change, end = np.zeros_like(at), 0
+    for r in rows:
+        begin, end = end, end + r.target.size
+        if share_in(r.observation, fitted.shape) > 0.0:
+            change[begin:end] = units.of_model([r], other) - at[begin:end]
+    return np.where(np.isfinite(change), change, 0.0)
 
 
 def _bounded(

@@ -195,12 +195,12 @@ class Trial:
         probe : float
             Coefficient at which a change of input or output is tried.
         """
-        if term.id == DELAY and self.observation.late is not None:
+        share = share_in(self.observation, shape)
+        if share > 0.0 and term.id == DELAY and self.observation.late is not None:
             late = ForceModel((*self.model.terms, FittedTerm(DELAY, probe, shape)))
             return (model_force(self.observation, late) - self._late_from) / probe
         cycle = self.observation.cycle if self.on_cycle(term, shape) else None
         motion = self.observation.motion if cycle is None else cycle
-        share = share_in(self.observation, shape)
         if share == 0.0:
             return np.zeros_like(motion.displacement)
         if term.column is not None:

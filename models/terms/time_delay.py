@@ -13,6 +13,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
 
     With `sampling` (Hz) the delay is a number of samples, as of a converter that takes channels in
     turn: `coefficient` at that rate, more at a lower one.
+    With `only` it is that of one test of a campaign; who knows the test leaves it out of others.
     `resampled` 0 is a channel that samples later; 1 or 3 one whose samples were aligned by lines
     or a cubic spline between them, which rounds a jump of the force, or rings beside it.
     """
@@ -49,6 +50,7 @@ TERM = Term(
     parameters=(
         Parameter("resampled", 0.0, 3.0, 0.0, ""),
         Parameter("sampling", 0.0, 1e9, 0.0, "Hz"),
+        Parameter("only", 0.0, 1e6, 0.0, ""),
     ),
     mistaken_for=("viscous-damping", "fractional-derivative", "series-compliance"),
 )

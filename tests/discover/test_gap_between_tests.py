@@ -116,6 +116,26 @@ def test_channels_that_are_some_samples_apart_are_late_by_more_at_a_lower_rate()
     assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
 
 
+def test_loggers_that_are_started_by_hand_are_late_by_another_time_in_every_test():
+    """Force and displacement on two clocks: the force is measured at other times of the motion."""
+    rng = np.random.default_rng(8)
+    late = rng.uniform(0.0, 8e-3, 8)
+
+    def shifted(number, r):
+        omega = 2.0 * np.pi * r.frequency
+        then = omega * (r.time - late[number - 1])
+        force = r.amplitude * omega * (800.0 * np.cos(then) - 120.0 * omega * np.sin(then))
+        return force + 0.01 * np.sqrt(np.mean(force**2)) * rng.standard_normal(then.size)
+
+    found = close_gap(each(shifted), MODEL)
+    assert [r.effect for r in found.rounds] == ["time-delay"]
+    stated = [t.fitted.coefficient for t in found.mended if t.fitted.id == "time-delay"]
+    np.testing.assert_allclose(stated, late, atol=1e-3)
+    np.testing.assert_allclose(stated[-2:], late[-2:], atol=2e-5)
+    assert found.final_gap_percent < 1.1 * found.noise_percent
+    assert any("one trigger" in f.text for f in found.findings)
+
+
 def test_a_model_of_what_changes_has_its_value_in_each_test():
     observations = observe_all(campaign(device, noise=0.0).records, 1)
     plain = ForceModel((FittedTerm("inertia", 120.0), FittedTerm("viscous-damping", 800.0)))
