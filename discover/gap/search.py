@@ -11,13 +11,13 @@ from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.doubt import Doubt, doubt_of_added, share_of, within_doubt
-from discover.gap.stages import Stage, record_misfit, seen_gap, stage, without
+from discover.gap.stages import Stage, left_out, record_misfit, seen_gap, stage, without
 from discover.naming.ahead import every_joint, pairs_ahead
 from discover.naming.columns import CandidateColumns
 from discover.naming.contest import Contest, leaves_much, reweighed, run_contest
-from discover.naming.evidence import AGREES, UNKNOWN
+from discover.naming.evidence import AGREES, UNKNOWN, Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
-from discover.naming.forces import has_joint, is_joint
+from discover.naming.forces import has_joint, is_joint, of_each_test
 from discover.naming.refine import extended, refine
 from discover.naming.restart import best_range, polished, restarted
 from discover.naming.rows import RecordRows
@@ -34,6 +34,8 @@ _MOST_MEMBERS = 4  # that are added to the curves of effects
 _CLEARER = 0.99  # of a gap, below which another kind of delay is preferred
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
 _FEWEST = 20.0  # of chi-square, likewise
+_LAWS = 3  # of an effect, that are fitted instead of values of every test's own
+_PREDICTS = 0.7  # of a gap on records left out, below which such a law is preferred
 _SEVERAL = 4  # records, of which one that stands out may have more noise than was found
 _OF_OTHERS = 60.0  # of chi-square, that an effect has to explain in the others then
 
@@ -334,13 +336,32 @@ def _mended(
     entry = next(e for e in contest.entries if e.effects and e.effects[0] == name)
     model = extended(fit.model, entry) if begun is None else begun.model
     mended = fit_model(rows, model, free_parameters(model))
-    if name == "time-delay":
+    if of_each_test(mended.model):
+        mended = _shared(rows, fit, contest.starts[name], mended)
+    if name == "time-delay" and not of_each_test(mended.model):
         return _aligned(rows, mended)
     if name == "sensor-gain":
         return best_range(rows, mended)
     if is_joint(name):
         mended = restarted(rows, mended)
     return polished(rows, mended) if has_joint(mended.model) else mended
+
+
+def _shared(
+    rows: Sequence[RecordRows], fit: ModelFit, starts: Sequence[Entry], own: ModelFit
+) -> ModelFit:
+    """Return the fit with one law for all tests, where that predicts tests that are left out.
+
+    Values of every test's own fit any law, and predict nothing.
+    """
+    begun = [extended(fit.model, start) for start in starts]
+    models = [m for m in begun if not of_each_test(m)]
+    if not models:
+        return own
+    trials = [fit_model(rows, m, free_parameters(m)) for m in models[:_LAWS]]
+    best = min(trials, key=lambda f: f.chi2)
+    predicts = pooled(left_out(rows, best)) < _PREDICTS * pooled(left_out(rows, own))
+    return best if predicts else own
 
 
 def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:

@@ -40,6 +40,11 @@ def in_record(term: Term, shape: Shape) -> bool:
     return changes and shape.get("over", 0.0) == 0.0
 
 
+def of_each_test(model: ForceModel) -> bool:
+    """Tell whether a model holds values of every test's own."""
+    return any(t.shape.get("only", 0.0) > 0.0 for t in model.terms)
+
+
 def share_in(observation: Observation, shape: Shape) -> float:
     """Return how much of a term is there in a record's test: from 0 to 1, where it grows."""
     if shape.get("only", 0.0) > 0.0 and observation.test != shape["only"]:

@@ -88,6 +88,14 @@ def test_one_slope_in_all_tests_is_one_number():
     assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
 
 
+def test_a_law_that_no_formula_follows_is_still_one_law_for_all_tests():
+    """The zero creeps by a logarithm of time: it predicts other tests, which own values can't."""
+    found = close_gap(each(lambda _, r: r.force + 9.0 * np.log1p(r.time / 0.2)), MODEL)
+    assert found.rounds[0].effect == "sensor-drift"
+    assert not any(t.fitted.shape.get("only", 0.0) for t in found.mended)
+    assert found.final_held_out_gap_percent < 0.2 * found.held_out_gap_percent
+
+
 def test_seals_whose_friction_falls_as_they_warm_are_thermal_drift():
     def rubbing(_, r):
         omega = 2.0 * np.pi * r.frequency
