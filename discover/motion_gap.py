@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -146,7 +146,8 @@ def motion_gap(model: Model, campaign: Campaign) -> MotionGap:
         time.
     """
     system, driven = require_system(campaign)
-    records = tuple(_one(model, record, system) for record in driven)
+    numbers = {record.file: place for place, record in enumerate(campaign.records, start=1)}
+    records = tuple(_one(model, record, system, numbers[record.file]) for record in driven)
     left = len(campaign.records) - len(driven)
     return MotionGap(model.name, system, records, _findings(records, left, system.input))
 
@@ -189,9 +190,9 @@ def motion_before_and_after(campaign: Campaign, before: Model, after: Model) -> 
     return result
 
 
-def _one(model: Model, record: Record, system: CarriedSystem) -> RecordMotion:
+def _one(model: Model, record: Record, system: CarriedSystem, number: int) -> RecordMotion:
     record = record.even  # a simulation in time has equal steps
-    observation = observe(record)
+    observation = replace(observe(record), test=number)
     usable = observation.usable
     time = record.time[usable]
     elapsed = time - time[0]

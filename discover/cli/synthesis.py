@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.cli.named_model import named_model
+from discover.naming.forces import of_number
 from models.checks import Array
 from models.device import PRESETS, Device
 from models.flow import dean
@@ -110,7 +111,8 @@ def model_records(
         samples = max(64, round(point.sampling / point.frequency))
         cycles = math.ceil(point.cycles)
         motion = sine_motion(point.amplitude, point.frequency, samples=samples, cycles=cycles)
-        force = law.at(_coordinate(law.coordinate, point, device, law.convention)).force(motion)
+        band = law.at(_coordinate(law.coordinate, point, device, law.convention))
+        force = of_number(index + 1, band).force(motion)
         generator = np.random.default_rng([seed, _MODEL_NOISE, index])
         x, f = measure(motion.time, motion.displacement, force, chain, generator)
         made.append(

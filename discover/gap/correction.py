@@ -114,6 +114,7 @@ def with_member(
     apart = without_span(raw, fit.tangents)
     power, along = np.sum(apart**2, axis=1), apart @ fit.residual
     seen = power > _APART * np.sum(raw**2, axis=1)
+    seen &= (along > 0.0) | [_may_pull(fit.model, m) for m in members]
     gain = np.where(seen, along**2 / np.maximum(power, 1e-300), 0.0)
     place = int(np.argmax(gain))
     if gain[place] <= 0.0:
@@ -123,6 +124,12 @@ def with_member(
     model = ForceModel((*fit.model.terms, term), fit.model.name)
     steps = _STEPS_BESIDE_JOINT if has_joint(model) else ITERATIONS
     return chosen.id, fit_model(rows, model, free_parameters(model), iterations=steps)
+
+
+def _may_pull(model: ForceModel, member: Part) -> bool:
+    """Tell whether a member may be negative: what only pushes does so at its other end too."""
+    sides = [t.shape.get("side") for t in model.terms if t.id == member.id]
+    return not TERMS[member.id].nonnegative or member.shape.get("side") in sides
 
 
 def _family(rows: Sequence[RecordRows], model: ForceModel, effect: str) -> list[Part]:

@@ -124,6 +124,8 @@ def _doubts(baseline: Baseline, rounds: Sequence[NamedEffect]) -> list[Finding]:
     """Return what speaks against relying on a round, though its effect lowers the misfit."""
     result = []
     for entry in rounds:
+        if entry.parameters.get("only"):
+            continue  # it is said apart what values of every test's own tell
         before, after = entry.unseen
         if before is not None and after is not None and after > _WORSE * before:
             result.append(
@@ -245,14 +247,15 @@ def _of_every_test(model: ForceModel) -> list[Finding]:
     result = []
     for effect, what, remedy in _OWN:
         terms = [t for t in model.terms if t.id == effect and t.shape["only"] > 0.0]
+        terms = [t for t in terms if t.shape.get("over", 1.0) > 0.0]  # of a drift the zeros
         if terms:
             values = [t.coefficient for t in terms]
             result.append(
                 Finding(
                     "warning",
                     f"{what} is another one in every test (from {min(values):.3g} to"
-                    f" {max(values):.3g} {terms[0].unit}). No model predicts it, so records that"
-                    f" were not fitted keep their gap: {remedy}.",
+                    f" {max(values):.3g} {terms[0].unit}). No model predicts it, and records that"
+                    f" were not fitted are met with the others' mean: {remedy}.",
                 )
             )
     return result

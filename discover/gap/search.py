@@ -35,6 +35,8 @@ _CLEARER = 0.99  # of a gap, below which another kind of delay is preferred
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
 _FEWEST = 20.0  # of chi-square, likewise
 _LAWS = 3  # of an effect, that are fitted instead of values of every test's own
+_MOSTLY = 0.95  # of what these explain, that such a law has to
+_AS_WELL = 1.1  # times the gap that these leave, up to which such a law is preferred
 _PREDICTS = 0.7  # of a gap on records left out, below which such a law is preferred
 _SEVERAL = 4  # records, of which one that stands out may have more noise than was found
 _OF_OTHERS = 60.0  # of chi-square, that an effect has to explain in the others then
@@ -218,7 +220,7 @@ def _tried(
     """Return the round that adds an effect, or what speaks against it."""
     mended = _mended(fitted, now.fit, contest, name, begun)
     gained = now.fit.chi2 - mended.chi2
-    if gained < max(_TOO_LITTLE * contest.excess, _FEWEST):
+    if gained < max(_TOO_LITTLE * contest.excess, _FEWEST) or _pulls(mended.model, name):
         return _Next(_refused(rows, now, contest, name))
     same = with_member(fitted, now.fit, [r.effect for r in left.rounds]) if left.curves else None
     if same is not None and same[1].chi2 < mended.chi2:
@@ -229,6 +231,12 @@ def _tried(
     if not _helps(rows, now, after):
         return _Next(_refused(rows, now, contest, name), rejected=name)
     return _Next(contest, Round(name, contest, now, after, dropped))
+
+
+def _pulls(model: ForceModel, name: str) -> bool:
+    """Tell whether some part of an effect has a sign that it can't have."""
+    own = [t for t in model.terms if t.id == name]
+    return any(t.term.nonnegative and t.coefficient <= 0.0 for t in own)
 
 
 def _helps(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
@@ -336,9 +344,9 @@ def _mended(
     entry = next(e for e in contest.entries if e.effects and e.effects[0] == name)
     model = extended(fit.model, entry) if begun is None else begun.model
     mended = fit_model(rows, model, free_parameters(model))
-    if of_each_test(mended.model):
+    if of_each_test(mended.model, name):
         mended = _shared(rows, fit, contest.starts[name], mended)
-    if name == "time-delay" and not of_each_test(mended.model):
+    if name == "time-delay" and not of_each_test(mended.model, name):
         return _aligned(rows, mended)
     if name == "sensor-gain":
         return best_range(rows, mended)
@@ -352,14 +360,19 @@ def _shared(
 ) -> ModelFit:
     """Return the fit with one law for all tests, where that predicts tests that are left out.
 
-    Values of every test's own fit any law, and predict nothing.
+    Values of every test's own fit any law, and of another test predict no more than their mean.
     """
-    begun = [extended(fit.model, start) for start in starts]
-    models = [m for m in begun if not of_each_test(m)]
+    begun = [(extended(fit.model, start), start.effects[0]) for start in starts]
+    models = [model for model, name in begun if not of_each_test(model, name)]
     if not models:
         return own
     trials = [fit_model(rows, m, free_parameters(m)) for m in models[:_LAWS]]
     best = min(trials, key=lambda f: f.chi2)
+    if fit.chi2 - best.chi2 < _MOSTLY * (fit.chi2 - own.chi2):
+        return own
+    gap, own_gap = (pooled([record_misfit(r, f.model) for r in rows]) for f in (best, own))
+    if gap < _AS_WELL * own_gap:
+        return best
     predicts = pooled(left_out(rows, best)) < _PREDICTS * pooled(left_out(rows, own))
     return best if predicts else own
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from discover.gap.accuracy import Misfit, misfit, pooled
 from discover.naming.fit import ModelFit, fit_model
-from discover.naming.forces import has_joint, model_force
+from discover.naming.forces import by_others, has_joint, model_force
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import UnitRows, whole_model
 from models.checks import Array
@@ -36,7 +36,7 @@ class Stage:
 def stage(rows: Sequence[RecordRows], fit: ModelFit) -> Stage:
     """Return what a fitted model makes of every record."""
     found = tuple(record_misfit(r, fit.model) for r in rows)
-    held = tuple(m for r, m in zip(rows, found, strict=True) if r.observation.held_out)
+    held = tuple(_of_unseen(r, fit.model) for r in rows if r.observation.held_out)
     return Stage(fit, found, held or left_out(rows, fit))
 
 
@@ -45,11 +45,17 @@ def record_misfit(rows: RecordRows, model: ForceModel) -> Misfit:
     return misfit(rows.observation, model_force(rows.observation, whole_model(rows, model)))
 
 
+def _of_unseen(rows: RecordRows, model: ForceModel) -> Misfit:
+    """Return the misfit of a record that a model was not fitted to: of its own it knows nothing."""
+    return record_misfit(rows, by_others(rows.observation, model))
+
+
 def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
     """Return each record's misfit by the model fitted to the others.
 
     Of more than sixteen records several are left out at once. What only a record that is left out
-    tells about (the one in which a joint opens, say) stays as it is.
+    tells about (the one in which a joint opens, say) stays as it is; a value of its own is the mean
+    of the others'.
     """
     if len(rows) < 2:
         return ()
@@ -72,7 +78,7 @@ def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
             along=None if along is None else np.concatenate([along[i] for i in rest], axis=1),
         )
         for i in range(fold, len(rows), folds):
-            found[i] = record_misfit(rows[i], refit.model)
+            found[i] = _of_unseen(rows[i], refit.model)
     return tuple(found[i] for i in range(len(rows)))
 
 

@@ -30,7 +30,7 @@ from discover.naming.evidence import (
     usual_left,
 )
 from discover.naming.fit import ModelFit, kind_of, misfits
-from discover.naming.forces import is_joint
+from discover.naming.forces import in_record, is_joint
 from discover.naming.reversal import other_reversals, reversal_doubt
 from discover.naming.rows import RecordRows
 from models.checks import Array
@@ -258,7 +258,7 @@ def _single(
     if np.any(np.diagonal(gram) <= _COLLINEAR * power) or not np.all(np.isfinite(gram)):
         return None
     solution = np.linalg.lstsq(gram, freed @ target, rcond=1e-10)[0]
-    if TERMS[v.effect].nonnegative and solution[0] <= 0.0:
+    if TERMS[v.effect].nonnegative and np.any(solution <= 0.0):
         return None
     now = chi2 - float(solution @ (freed @ target))
     value = evidence(now, len(v.parts) + v.shapes) - unusual(v.parts[0].shape)
@@ -385,7 +385,9 @@ def reweighed(
         for e in contest.entries
         if len(e.effects) == 1 and e.effects[0] in fits
     }
-    steady = min((c for n, c in refitted.items() if TERMS[n].follows != "time"), default=np.inf)
+    added = {n: fits[n].model.terms[-1] for n in refitted}
+    lasting = (c for n, c in refitted.items() if not in_record(added[n].term, added[n].shape))
+    steady = min(lasting, default=np.inf)
     entries = []
     for e in contest.entries:
         if len(e.effects) != 1 or e.effects[0] not in fits:
@@ -395,9 +397,9 @@ def reweighed(
         spent = sum(len(v.parts) + v.shapes for v in e.variants)
         value = -0.5 * cost(chi2 - contest.noise, informative, contest.tolerated)
         value -= 0.5 * spent * float(np.log(contest.rows))
-        added = found.model.terms[-1]
-        value -= over_time(rows, fit.residual, found.residual, added, steady - chi2)
-        value -= unusual(added.shape)
+        last = added[e.effects[0]]
+        value -= over_time(rows, fit.residual, found.residual, last, steady - chi2)
+        value -= unusual(last.shape)
         entries.append(replace(e, chi2=chi2, log_evidence=value))
     entries.sort(key=lambda e: -e.log_evidence)
     usual = usual_left(rows, contest.tolerated)

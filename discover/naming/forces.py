@@ -40,24 +40,51 @@ def in_record(term: Term, shape: Shape) -> bool:
     return changes and shape.get("over", 0.0) == 0.0
 
 
-def of_each_test(model: ForceModel) -> bool:
-    """Tell whether a model holds values of every test's own."""
-    return any(t.shape.get("only", 0.0) > 0.0 for t in model.terms)
+def of_each_test(model: ForceModel, effect: str) -> bool:
+    """Tell whether a model holds an effect by values of every test's own."""
+    return any(t.id == effect and t.shape.get("only", 0.0) > 0.0 for t in model.terms)
+
+
+def by_others(observation: Observation, model: ForceModel) -> ForceModel:
+    """Return a model with the mean of other tests' own values in place of a record's own."""
+    kept = [t for t in model.terms if not t.shape.get("only", 0.0)]
+    if len(kept) == len(model.terms):
+        return model
+    kinds: dict[tuple[object, ...], list[FittedTerm]] = {}
+    for t in model.terms:
+        if t.shape.get("only", 0.0):
+            kind = tuple((k, v) for k, v in t.shape.items() if k != "only")
+            kinds.setdefault((t.id, *kind), []).append(t)
+    for own in kinds.values():
+        others = [t.coefficient for t in own if t.shape["only"] != observation.test]
+        shape = {**own[0].shape, "only": float(observation.test)}
+        kept.append(FittedTerm(own[0].id, float(np.mean(others or [0.0])), shape))
+    return ForceModel(tuple(kept), model.name)
 
 
 def share_in(observation: Observation, shape: Shape) -> float:
     """Return how much of a term is there in a record's test: from 0 to 1, where it grows."""
-    if shape.get("only", 0.0) > 0.0 and observation.test != shape["only"]:
+    return _share(observation.test, shape)
+
+
+def _share(number: int, shape: Shape) -> float:
+    """Return how much of a term is there in a campaign's test; `number` 0 where it isn't known."""
+    if shape.get("only", 0.0) > 0.0 and number != shape["only"]:
         return 0.0
-    if observation.test == 0:
+    if number == 0:
         return 1.0
-    late = observation.test - shape.get("from_test", 0.0) + 1.0
+    late = number - shape.get("from_test", 0.0) + 1.0
     return min(max(late / max(shape.get("over", 0.0), 1.0), 0.0), 1.0)
 
 
 def of_test(observation: Observation, model: ForceModel) -> ForceModel:
     """Return a model with as much of each term as there is in a record's test."""
-    shares = [share_in(observation, t.shape) for t in model.terms]
+    return of_number(observation.test, model)
+
+
+def of_number(number: int, model: ForceModel) -> ForceModel:
+    """Return a model with as much of each term as there is in a campaign's test, from 1."""
+    shares = [_share(number, t.shape) for t in model.terms]
     if all(share == 1.0 for share in shares):
         return model
     terms = tuple(
@@ -212,7 +239,7 @@ class Trial:
             return share * term.column(motion, shape)
         if term.transform is None:
             raise ValueError(f"{term.id} neither adds nor changes a force")
-        if cycle is None and in_record(term, shape):
+        if cycle is None and term.acts == "output" and in_record(term, shape):
             whole = self._late_from
             changed = term.transform(lambda _: whole, motion, share * probe, shape)
             return (changed - whole) / probe

@@ -99,7 +99,8 @@ def refine(
         found = min((_fit(rows, m, units, _ITERATIONS, frozen) for m in models), key=_dearness)
         if not np.isfinite(found.chi2):
             continue
-        if TERMS[name].nonnegative and found.model.terms[-1].coefficient <= 0.0:
+        own = found.model.terms[len(fit.model.terms) :]
+        if TERMS[name].nonnegative and min(t.coefficient for t in own) <= 0.0:
             continue
         if name == "sensor-gain" and not has_joint(fit.model):
             found = best_range(rows, found)

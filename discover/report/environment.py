@@ -55,6 +55,8 @@ def shape(term: Mapping[str, Any]) -> str:
     'from test 2, over 7 tests'
     >>> shape({"id": "sensor-drift", "over": 1.0, "only": 3.0})
     'in test 3 only'
+    >>> shape({"id": "sensor-drift", "over": 0.0, "power": 1.0, "only": 3.0})
+    'power 1, in test 3 only'
     """
     parts = []
     known = TERMS.get(str(term.get("id")))
@@ -62,7 +64,8 @@ def shape(term: Mapping[str, Any]) -> str:
     for parameter in () if known is None else known.parameters:
         name = parameter.name
         value = term.get(name)
-        if value is None or (value == parameter.default and name not in _ALWAYS):
+        growing = bool(alone) and name == "power" and not term.get("over")
+        if value is None or (value == parameter.default and name not in _ALWAYS and not growing):
             continue
         if alone and name in _OF_A_TEST:
             continue

@@ -81,6 +81,40 @@ def test_a_zero_that_is_another_one_in_every_test_is_the_sensor_s_and_predicts_n
     assert "zero the channel before each test" in warning
 
 
+@pytest.mark.parametrize("model", [MODEL, MODEL + ",force-offset"])
+def test_zeros_of_their_own_about_a_common_one_are_still_each_its_own(model):
+    zeros = 20.0 + 12.0 * np.random.default_rng(2).standard_normal(8)
+    found = close_gap(each(lambda number, r: r.force + zeros[number - 1]), model)
+    assert [r.effect for r in found.rounds] == ["sensor-drift"]
+    assert found.final_gap_percent < 1.1 * found.noise_percent
+
+
+def test_one_delay_in_samples_that_fits_nearly_is_kept_as_it_predicts_other_tests():
+    rng = np.random.default_rng(4)
+
+    def shifted(_, r):
+        omega = 2.0 * np.pi * r.frequency
+        late = 3.0 * r.step * (1.0 + 0.02 * rng.standard_normal())
+        then = omega * (r.time - late)
+        force = r.amplitude * omega * (800.0 * np.cos(then) - 120.0 * omega * np.sin(then))
+        return force + 0.01 * np.sqrt(np.mean(force**2)) * rng.standard_normal(then.size)
+
+    found = close_gap(each(shifted), MODEL)
+    assert found.rounds[0].effect == "time-delay"
+    assert found.rounds[0].parameters["sampling"] > 0.0
+    assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
+
+
+def test_a_stop_pushes_at_one_end_and_is_not_named_for_what_pulls_at_the_other():
+    def law(t, x, v, a):
+        upper, lower = np.maximum(x - 0.008, 0.0), np.maximum(-0.01 - x, 0.0)
+        return device(t, x, v, a) + 2e4 * upper + 1.2e4 * lower
+
+    found = close_gap(campaign(law), MODEL)
+    stops = [t.fitted for t in found.mended if t.fitted.id == "end-stop"]
+    assert all(t.coefficient > 0.0 for t in stops)
+
+
 def test_one_slope_in_all_tests_is_one_number():
     found = close_gap(each(lambda _, r: r.force + 3.0 * r.time), MODEL)
     (slope,) = [t.fitted for t in found.mended if t.fitted.id == "sensor-drift"]
@@ -141,6 +175,7 @@ def test_loggers_that_are_started_by_hand_are_late_by_another_time_in_every_test
     np.testing.assert_allclose(stated, late, atol=1e-3)
     np.testing.assert_allclose(stated[-2:], late[-2:], atol=2e-5)
     assert found.final_gap_percent < 1.1 * found.noise_percent
+    assert found.final_held_out_gap_percent > 3.0 * found.noise_percent
     assert any("one trigger" in f.text for f in found.findings)
 
 
