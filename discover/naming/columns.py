@@ -7,7 +7,7 @@ from collections.abc import Hashable, Sequence
 import numpy as np
 
 from discover.naming.candidates import Part, Variant
-from discover.naming.forces import Trial
+from discover.naming.forces import Trial, share_in
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import whole_model
 from models.checks import Array
@@ -74,19 +74,16 @@ def _columns(
     blocks = []
     for r in rows:
         trial = Trial(r.observation, whole_model(r, model))
-        forces = [
-            trial.added(t, s, p.probe) for t, s, p in zip(terms, shapes, parts, strict=True)
-        ]
-        block = np.empty((len(parts), r.target.size))
-        over = np.array(
-            [trial.on_cycle(t, s) for t, s in zip(terms, shapes, strict=True)], dtype=np.bool_
-        )
-        on_cycle, at_samples = np.flatnonzero(over), np.flatnonzero(~over)
+        there = [i for i, s in enumerate(shapes) if share_in(r.observation, s) > 0.0]
+        forces = {i: trial.added(terms[i], shapes[i], parts[i].probe) for i in there}
+        block = np.zeros((len(parts), r.target.size))
+        on_cycle = [i for i in there if trial.on_cycle(terms[i], shapes[i])]
+        at_samples = [i for i in there if not trial.on_cycle(terms[i], shapes[i])]
         with np.errstate(over="ignore", invalid="ignore"):
-            if r.cycle_rows is not None and on_cycle.size:
-                block[over] = np.stack([forces[i] for i in on_cycle]) @ r.cycle_rows
-            if at_samples.size:
-                block[~over] = r.project(np.stack([forces[i] for i in at_samples]))
+            if r.cycle_rows is not None and on_cycle:
+                block[on_cycle] = np.stack([forces[i] for i in on_cycle]) @ r.cycle_rows
+            if at_samples:
+                block[at_samples] = r.project(np.stack([forces[i] for i in at_samples]))
         blocks.append(block)
     rows_of_parts = np.concatenate(blocks, axis=1)
     with np.errstate(over="ignore", invalid="ignore"):
