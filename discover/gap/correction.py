@@ -14,11 +14,12 @@ import numpy as np
 
 from discover.gap.accuracy import pooled
 from discover.gap.stages import Stage, left_out, stage
-from discover.naming.candidates import Part, Variant, scales_of, variants
+from discover.naming.candidates import Part, Variant, variants
 from discover.naming.columns import candidate_columns, without_span
 from discover.naming.fit import ITERATIONS, ModelFit, fit_model, free_parameters
 from discover.naming.forces import DELAY, has_joint, is_joint
 from discover.naming.rows import RecordRows
+from discover.naming.scales import scales_of
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 
@@ -30,7 +31,7 @@ _SIDES = (0.0, 1.0, -1.0)
 _CLOSE = 1.1  # times the noise floor, up to which no curve is corrected
 _WORTH = 0.05  # of the gap of records that were left out, that a correction has to close
 _LEAST = 0.02  # of the misfit, that a member has to explain
-_FEWEST = 20.0  # of chi-square, likewise
+_FEWEST = 20.0  # of chi-square, that it has to explain too
 _STEPS_BESIDE_JOINT = 6
 _APART = 1e-4  # of a member's own square, that it has to add to what the model spans
 

@@ -243,7 +243,7 @@ def _not_met(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Findin
 
 
 def _of_every_test(model: ForceModel) -> list[Finding]:
-    """Return what is another one in every test, and so keeps others' gap as it is."""
+    """Return what is another one in every test, and so is not known of others."""
     result = []
     for effect, what, remedy in _OWN:
         terms = [t for t in model.terms if t.id == effect and t.shape["only"] > 0.0]

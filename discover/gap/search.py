@@ -7,37 +7,29 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.gap.accuracy import pooled
 from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.doubt import Doubt, doubt_of_added, share_of, within_doubt
-from discover.gap.stages import Stage, left_out, record_misfit, seen_gap, stage, without
+from discover.gap.mending import mended, pulls, without_superfluous
+from discover.gap.stages import Stage, seen_gap, stage
 from discover.naming.ahead import every_joint, pairs_ahead
 from discover.naming.columns import CandidateColumns
 from discover.naming.contest import Contest, leaves_much, reweighed, run_contest
-from discover.naming.evidence import AGREES, UNKNOWN, Entry
+from discover.naming.evidence import AGREES, UNKNOWN
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
-from discover.naming.forces import has_joint, is_joint, of_each_test
-from discover.naming.refine import extended, refine
-from discover.naming.restart import best_range, polished, restarted
+from discover.naming.forces import has_joint
+from discover.naming.refine import refine
 from discover.naming.rows import RecordRows
 from models.checks import Array
-from models.constitutive import FittedTerm, ForceModel
 
 MOST_ROUNDS = 6
-_SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
 _NOTICED = 0.005  # of the gap, that an effect has to close
 _CLEARLY = 0.1  # of the mean square relative gap
 _MOST_MEMBERS = 4  # that are added to the curves of effects
-_CLEARER = 0.99  # of a gap, below which another kind of delay is preferred
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
-_FEWEST = 20.0  # of chi-square, likewise
-_LAWS = 3  # of an effect, that are fitted instead of values of every test's own
-_MOSTLY = 0.95  # of what these explain, that such a law has to
-_AS_WELL = 1.1  # times the gap that these leave, up to which such a law is preferred
-_PREDICTS = 0.7  # of a gap on records left out, below which such a law is preferred
+_FEWEST = 20.0  # of chi-square, that an effect has to explain
 _SEVERAL = 4  # records, of which one that stands out may have more noise than was found
 _OF_OTHERS = 60.0  # of chi-square, that an effect has to explain in the others then
 
@@ -218,25 +210,19 @@ def _tried(
     name: str,
 ) -> _Next:
     """Return the round that adds an effect, or what speaks against it."""
-    mended = _mended(fitted, now.fit, contest, name, begun)
-    gained = now.fit.chi2 - mended.chi2
-    if gained < max(_TOO_LITTLE * contest.excess, _FEWEST) or _pulls(mended.model, name):
+    fit = mended(fitted, now.fit, contest, name, begun)
+    gained = now.fit.chi2 - fit.chi2
+    if gained < max(_TOO_LITTLE * contest.excess, _FEWEST) or pulls(fit.model, name):
         return _Next(_refused(rows, now, contest, name))
     same = with_member(fitted, now.fit, [r.effect for r in left.rounds]) if left.curves else None
-    if same is not None and same[1].chi2 < mended.chi2:
+    if same is not None and same[1].chi2 < fit.chi2:
         return _Next(contest.without(name), waits=True)
-    earlier = [r.effect for r in left.rounds if r.effect in {t.id for t in mended.model.terms}]
-    mended, dropped = _without_superfluous(fitted, mended, earlier)
-    after = stage(rows, mended)
+    earlier = [r.effect for r in left.rounds if r.effect in {t.id for t in fit.model.terms}]
+    fit, dropped = without_superfluous(fitted, fit, earlier)
+    after = stage(rows, fit)
     if not _helps(rows, now, after):
         return _Next(_refused(rows, now, contest, name), rejected=name)
     return _Next(contest, Round(name, contest, now, after, dropped))
-
-
-def _pulls(model: ForceModel, name: str) -> bool:
-    """Tell whether some part of an effect has a sign that it can't have."""
-    own = [t for t in model.terms if t.id == name]
-    return any(t.term.nonnegative and t.coefficient <= 0.0 for t in own)
 
 
 def _helps(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
@@ -331,75 +317,3 @@ def _deeper(
         contest = replace(contest, entries=(*contest.entries, *found))
         contest = reweighed(rows, contest, fit, fits, left.effects)
     return contest, fits
-
-
-def _mended(
-    rows: Sequence[RecordRows],
-    fit: ModelFit,
-    contest: Contest,
-    name: str,
-    begun: ModelFit | None,
-) -> ModelFit:
-    """Return the fit with an effect added, from where the contest's own refinement stopped."""
-    entry = next(e for e in contest.entries if e.effects and e.effects[0] == name)
-    model = extended(fit.model, entry) if begun is None else begun.model
-    mended = fit_model(rows, model, free_parameters(model))
-    if of_each_test(mended.model, name):
-        mended = _shared(rows, fit, contest.starts[name], mended)
-    if name == "time-delay" and not of_each_test(mended.model, name):
-        return _aligned(rows, mended)
-    if name == "sensor-gain":
-        return best_range(rows, mended)
-    if is_joint(name):
-        mended = restarted(rows, mended)
-    return polished(rows, mended) if has_joint(mended.model) else mended
-
-
-def _shared(
-    rows: Sequence[RecordRows], fit: ModelFit, starts: Sequence[Entry], own: ModelFit
-) -> ModelFit:
-    """Return the fit with one law for all tests, where that predicts tests that are left out.
-
-    Values of every test's own fit any law, and of another test predict no more than their mean.
-    """
-    begun = [(extended(fit.model, start), start.effects[0]) for start in starts]
-    models = [model for model, name in begun if not of_each_test(model, name)]
-    if not models:
-        return own
-    trials = [fit_model(rows, m, free_parameters(m)) for m in models[:_LAWS]]
-    best = min(trials, key=lambda f: f.chi2)
-    if fit.chi2 - best.chi2 < _MOSTLY * (fit.chi2 - own.chi2):
-        return own
-    gap, own_gap = (pooled([record_misfit(r, f.model) for r in rows]) for f in (best, own))
-    if gap < _AS_WELL * own_gap:
-        return best
-    predicts = pooled(left_out(rows, best)) < _PREDICTS * pooled(left_out(rows, own))
-    return best if predicts else own
-
-
-def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
-    """Return the fit with the delay made as its samples tell: its lines hardly do."""
-    best, gap = fit, _CLEARER * pooled([record_misfit(r, fit.model) for r in rows])
-    *others, delay = fit.model.terms
-    for degree in (1.0, 3.0):
-        late = FittedTerm(delay.id, delay.coefficient, {**delay.shape, "resampled": degree})
-        model = ForceModel((*others, late), fit.model.name)
-        trial = fit_model(rows, model, free_parameters(model))
-        now = pooled([record_misfit(r, trial.model) for r in rows])
-        if now < gap:
-            best, gap = trial, now
-    return best
-
-
-def _without_superfluous(
-    rows: Sequence[RecordRows], fit: ModelFit, names: Sequence[str]
-) -> tuple[ModelFit, tuple[str, ...]]:
-    """Return the fit without earlier effects that the newest made worth next to nothing."""
-    dropped: list[str] = []
-    for name in names[::-1]:
-        less = without(fit.model, name)
-        trial = fit_model(rows, less, free_parameters(less), iterations=4)
-        if trial.chi2 - fit.chi2 < 2.0 * _SUPERFLUOUS:
-            fit = trial
-            dropped.append(name)
-    return fit, tuple(dropped)

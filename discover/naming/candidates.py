@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from discover.motion_fit import Observation
+from discover.naming.scales import Scales
 from models.motion import sine_motion
 from models.terms import TERMS
 from models.terms.trials import chosen_parameters, trial_shapes, trial_size
@@ -15,36 +15,6 @@ from models.terms.trials import chosen_parameters, trial_shapes, trial_size
 _TESTS = 32  # of a campaign, from which a gain may have changed
 _FEW_TESTS = 4.0  # in which a gradual change is not told from a jump
 _MOST_OWN = 64  # tests, of which each may have its own value
-_ANOTHER_RATE = 1.05  # times the sampling interval of another record
-
-
-@dataclass(frozen=True)
-class Scales:
-    """What a campaign covers."""
-
-    speed: float
-    """m/s, greatest amplitude."""
-    displacement: float
-    """m, likewise."""
-    force: float
-    """N, greatest measured."""
-    peaks: tuple[float, ...]
-    """N, of every record, rising."""
-    duration: float
-    """s, longest record."""
-    omega: float
-    """rad/s, highest."""
-    numbers: tuple[int, ...] = ()
-    """Of the tests that are fitted, in the campaign; 0 where it is not known."""
-    reversal: float = 0.0
-    """m/s over which the baseline's friction reverses."""
-    sampling: float = 0.0
-    """Hz, highest; 0 where all records have the same."""
-
-    @property
-    def tests(self) -> int:
-        """Number of the last test of the campaign; 0 where it is not known."""
-        return max(self.numbers, default=0)
 
 
 @dataclass(frozen=True)
@@ -69,24 +39,6 @@ class Variant:
     """At least one."""
     shapes: int
     """Number of shape parameters that were chosen."""
-
-
-def scales_of(observations: Sequence[Observation], reversal: float = 0.0) -> Scales:
-    """Return what the records cover."""
-    peaks = sorted(float(np.abs(o.measured).max()) for o in observations)
-    steps = [o.motion.step for o in observations]
-    fastest, slowest = min(steps), max(steps)
-    return Scales(
-        speed=max(float(np.abs(o.motion.velocity).max()) for o in observations),
-        displacement=max(float(np.abs(o.motion.displacement).max()) for o in observations),
-        force=peaks[-1],
-        peaks=tuple(peaks),
-        duration=max(float(o.time[-1] - o.time[0]) for o in observations),
-        omega=max(float(w.frequency) for o in observations for w in o.windows) * 2.0 * np.pi,
-        numbers=tuple(o.test for o in observations),
-        reversal=reversal,
-        sampling=0.0 if slowest < _ANOTHER_RATE * fastest else 1.0 / fastest,
-    )
 
 
 def _one(effect: str, shapes: int = 0, probe: float = 1.0, **shape: float) -> Variant:

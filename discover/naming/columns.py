@@ -77,8 +77,9 @@ def _columns(
         there = [i for i, s in enumerate(shapes) if share_in(r.observation, s) > 0.0]
         forces = {i: trial.added(terms[i], shapes[i], parts[i].probe) for i in there}
         block = np.zeros((len(parts), r.target.size))
-        on_cycle = [i for i in there if trial.on_cycle(terms[i], shapes[i])]
-        at_samples = [i for i in there if not trial.on_cycle(terms[i], shapes[i])]
+        over_cycle = {i: trial.on_cycle(terms[i], shapes[i]) for i in there}
+        on_cycle = [i for i in there if over_cycle[i]]
+        at_samples = [i for i in there if not over_cycle[i]]
         with np.errstate(over="ignore", invalid="ignore"):
             if r.cycle_rows is not None and on_cycle:
                 block[on_cycle] = np.stack([forces[i] for i in on_cycle]) @ r.cycle_rows

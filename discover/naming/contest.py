@@ -9,12 +9,12 @@ for the case that two are missing.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.naming.candidates import Variant, scales_of, variants
+from discover.naming.candidates import Variant, variants
 from discover.naming.columns import CandidateColumns, candidate_columns, without_span
 from discover.naming.evidence import (
     AGREES,
@@ -22,6 +22,7 @@ from discover.naming.evidence import (
     LEFT_BY_JOINT,
     UNKNOWN,
     Entry,
+    Evidence,
     cost,
     over_time,
     probabilities_of,
@@ -31,16 +32,16 @@ from discover.naming.evidence import (
 )
 from discover.naming.fit import ModelFit, kind_of, misfits
 from discover.naming.forces import in_record, is_joint
+from discover.naming.pairs import pairs_with, unlikely
 from discover.naming.reversal import other_reversals, reversal_doubt
 from discover.naming.rows import RecordRows
+from discover.naming.scales import scales_of
 from models.checks import Array
 from models.terms import TERMS
 
 _NOISE_DEVIATIONS = 4.0  # of chi-square, within which the misfit is the noise's
 _NOISE_UNCERTAINTY = 0.12  # of the noise's variance, over all rows
-_PRIOR_PAIR = -6.0
-_PAIR_DOUBT = 0.17  # nats a row: two shapes explain more by chance
-_LEFT_ALONE = 0.04  # likewise, from which a second is sought beside it
+_LEFT_ALONE = 0.04  # of the misfit: where the best alone leaves more, a pair is sought
 _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
 _AN_ANSWER = 0.05
@@ -123,9 +124,6 @@ class Contest:
         return next((e for e in self.entries if e.effects == (effect,)), None)
 
 
-Evidence = Callable[[float, int], float]
-
-
 def run_contest(
     rows: Sequence[RecordRows],
     fit: ModelFit,
@@ -192,7 +190,7 @@ def run_contest(
     if ranked and ranked[0].chi2 > noise + 20.0:
         for lead in ranked[:_PAIR_CANDIDATES]:
             start = (target, chi2)
-            pairs += _pairs(lead, best, chosen, spans, freed, start, evidence, informative)
+            pairs += pairs_with(lead, best, chosen, spans, freed, start, evidence, informative)
     everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
     usual = usual_left(rows, tolerated)
     probabilities = probabilities_of(everything, effects, chi2 - noise, informative, usual)
@@ -297,57 +295,6 @@ def _beside_other_friction(
     return found
 
 
-def _pairs(
-    lead: Entry,
-    singles: Mapping[str, Entry],
-    chosen: Sequence[Variant],
-    spans: Sequence[slice],
-    freed: Array,
-    start: tuple[Array, float],
-    evidence: Evidence,
-    informative: float,
-) -> list[Entry]:
-    """Return the best pair of `lead` with every other effect; `start` is misfit and chi-square."""
-    target, chi2 = start
-    index = next(i for i, v in enumerate(chosen) if v is lead.variants[0])
-    own = freed[spans[index]]
-    norm = np.linalg.norm(own, axis=1)
-    basis = np.linalg.qr((own / norm[:, None]).T)[0].T
-    rest = target - basis.T @ (basis @ target)
-    others = freed - (freed @ basis.T) @ basis
-    power = np.sum(others**2, axis=1)
-    along = others @ rest
-    apart = power > 1e-4 * np.sum(freed**2, axis=1)
-    gain = np.where(apart, along**2 / np.maximum(power, 1e-300), 0.0)
-    best: dict[str, tuple[float, int]] = {}
-    for i, v in enumerate(chosen):
-        if v.effect == lead.effects[0] or len(v.parts) > 1:
-            continue
-        k = spans[i].start
-        if TERMS[v.effect].nonnegative and along[k] <= 0.0:
-            continue
-        if v.effect not in best or gain[k] > best[v.effect][0]:
-            best[v.effect] = (float(gain[k]), i)
-    after = chi2 - float(np.sum((basis @ target) ** 2))
-    found = []
-    for name, (drop, i) in best.items():
-        v = chosen[i]
-        both = np.concatenate([own, freed[spans[i]]])
-        solution = np.linalg.lstsq(both.T, target, rcond=1e-10)[0]
-        if TERMS[lead.effects[0]].nonnegative and solution[0] <= 0.0:
-            continue
-        spent = lead.variants[0].shapes + len(own) + 1 + v.shapes
-        value = evidence(after - drop, spent) + _PRIOR_PAIR - _PAIR_DOUBT * informative
-        names = (lead.effects[0], name)
-        shapes = (lead.variants[0], v)
-        parts = (tuple(solution[: len(own)]), (float(solution[-1]),))
-        other = singles.get(name)
-        if other is not None and other.log_evidence > lead.log_evidence:
-            names, shapes, parts = names[::-1], shapes[::-1], parts[::-1]
-        found.append(Entry(names, shapes, parts, after - drop, value))
-    return found
-
-
 def leaves_much(rows: Sequence[RecordRows], contest: Contest, effect: str) -> bool:
     """Tell whether an effect, alone or in a pair, leaves more than what is really there would."""
     if effect == AGREES or contest.excess <= 0.0 or len(rows) < FEW:
@@ -365,7 +312,7 @@ def pair_evidence(
     spent = sum(len(v.parts) + v.shapes for v in chosen)
     value = -0.5 * cost(chi2 - contest.noise, informative, contest.tolerated)
     value -= 0.5 * spent * float(np.log(contest.rows))
-    return value + _PRIOR_PAIR - _PAIR_DOUBT * informative
+    return value + unlikely(informative)
 
 
 def reweighed(

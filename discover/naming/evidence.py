@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +35,10 @@ _UNSEEN = 15.0  # nats that a change over time loses where none is seen inside t
 _SEEN = 10.0  # of chi-square, from which one is
 _SLOW_FALL = 0.08  # m/s: seals' friction has fallen by then (mm/s to cm/s in the literature)
 _UNUSUAL = 8.0  # nats for each factor of e above it
+
+
+Evidence = Callable[[float, int], float]
+"""Log evidence in nats, of a chi-square and a number of parameters."""
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from itertools import product
 
 import numpy as np
 
-from discover.naming.candidates import Scales, scales_of
 from discover.naming.columns import without_span
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
+from discover.naming.scales import Scales, scales_of
 from discover.naming.scattered import scattered, unexplained
 from discover.naming.unit_rows import UnitRows, whole_model
 from models.constitutive import FittedTerm, ForceModel

@@ -13,10 +13,10 @@ import numpy as np
 from scipy.optimize import Bounds, differential_evolution
 from scipy.stats import qmc
 
-from discover.naming.candidates import scales_of
 from discover.naming.columns import span_of, without_basis
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.rows import RecordRows
+from discover.naming.scales import scales_of
 from discover.naming.unit_rows import UnitRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel

@@ -1,6 +1,7 @@
 """End stops as rigs have them: bumpers that lose energy, cushions, ends that are not even.
 
-Forces are written here from the contact laws of the literature, at the exact motion.
+Forces are written here from the contact laws of the literature, at the exact motion. The catalogue
+has the first two laws, so that their tests prove recovery, not that a rig's bumper is met.
 """
 
 import numpy as np

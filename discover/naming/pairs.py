@@ -1,0 +1,71 @@
+"""Two effects at once: the best pair of one with every other, along straight lines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from discover.naming.candidates import Variant
+from discover.naming.evidence import Entry, Evidence
+from models.checks import Array
+from models.terms import TERMS
+
+_PRIOR = -6.0
+_DOUBT = 0.17  # nats a row: two shapes explain more by chance
+
+
+def unlikely(informative: float) -> float:
+    """Return the log of how much less likely two effects are than one, by informative rows."""
+    return _PRIOR - _DOUBT * informative
+
+
+def pairs_with(
+    lead: Entry,
+    singles: Mapping[str, Entry],
+    chosen: Sequence[Variant],
+    spans: Sequence[slice],
+    freed: Array,
+    start: tuple[Array, float],
+    evidence: Evidence,
+    informative: float,
+) -> list[Entry]:
+    """Return the best pair of `lead` with every other effect; `start` is misfit and chi-square."""
+    target, chi2 = start
+    index = next(i for i, v in enumerate(chosen) if v is lead.variants[0])
+    own = freed[spans[index]]
+    norm = np.linalg.norm(own, axis=1)
+    basis = np.linalg.qr((own / norm[:, None]).T)[0].T
+    rest = target - basis.T @ (basis @ target)
+    others = freed - (freed @ basis.T) @ basis
+    power = np.sum(others**2, axis=1)
+    along = others @ rest
+    apart = power > 1e-4 * np.sum(freed**2, axis=1)
+    gain = np.where(apart, along**2 / np.maximum(power, 1e-300), 0.0)
+    best: dict[str, tuple[float, int]] = {}
+    for i, v in enumerate(chosen):
+        if v.effect == lead.effects[0] or len(v.parts) > 1:
+            continue
+        k = spans[i].start
+        if TERMS[v.effect].nonnegative and along[k] <= 0.0:
+            continue
+        if v.effect not in best or gain[k] > best[v.effect][0]:
+            best[v.effect] = (float(gain[k]), i)
+    after = chi2 - float(np.sum((basis @ target) ** 2))
+    found = []
+    for name, (drop, i) in best.items():
+        v = chosen[i]
+        both = np.concatenate([own, freed[spans[i]]])
+        solution = np.linalg.lstsq(both.T, target, rcond=1e-10)[0]
+        if TERMS[lead.effects[0]].nonnegative and solution[0] <= 0.0:
+            continue
+        spent = lead.variants[0].shapes + len(own) + 1 + v.shapes
+        value = evidence(after - drop, spent) + unlikely(informative)
+        names = (lead.effects[0], name)
+        shapes = (lead.variants[0], v)
+        parts = (tuple(solution[: len(own)]), (float(solution[-1]),))
+        other = singles.get(name)
+        if other is not None and other.log_evidence > lead.log_evidence:
+            names, shapes, parts = names[::-1], shapes[::-1], parts[::-1]
+        found.append(Entry(names, shapes, parts, after - drop, value))
+    return found
