@@ -298,7 +298,7 @@ def fit_model(
     def drawn(values: Array) -> float:
         return 0.0 if stay is None else float((values - begun) @ stay @ (values - begun))
 
-    settled = linear and all(p.shape is None for p in parameters)
+    settled = not parameters or (linear and all(p.shape is None for p in parameters))
     damping, idle = _DAMPING, 0
     for _ in range(0 if settled or not np.isfinite(chi2) else iterations):
         scale = np.linalg.norm(tangents, axis=1)

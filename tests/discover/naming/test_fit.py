@@ -8,7 +8,9 @@ from discover.motion_fit import observe
 from discover.naming.fit import fit_model, free_parameters, kind_of
 from discover.naming.restart import best_range
 from discover.naming.rows import record_rows
+from discover.naming.unit_rows import UnitRows
 from models.constitutive import FittedTerm, ForceModel
+from models.terms import TERMS
 from tests.discover.gap_data import campaign, device
 
 
@@ -167,3 +169,21 @@ def test_an_order_alone_may_be_nearly_two():
 
     fit = fitted(rows_of(law), model(("fractional-derivative", 100.0, {"order": 1.8})))
     assert fit.model.terms[0].shape["order"] == pytest.approx(order, abs=0.002)
+
+
+def test_a_model_in_which_nothing_is_free_is_evaluated_once():
+    """Starts of joints are ranked so, by the hundred."""
+
+    class Counted(UnitRows):
+        times = 0
+
+        def of_model(self, rows, model):
+            self.times += 1
+            return super().of_model(rows, model)
+
+    units = Counted()
+    shape = TERMS["series-compliance"].shape({})
+    sprung = model(("inertia", 100.0), ("series-compliance", 1e-6, shape))
+    fit = fit_model(rows_of(device), sprung, (), units=units)
+    assert units.times == 1
+    assert fit.model is sprung
