@@ -19,7 +19,9 @@ def column(motion: Motion, shape: Shape) -> Array:
     speed = shape["transition_speed"]
     v, x = motion.velocity, motion.displacement
     direction = np.sign(v) if speed == 0.0 else np.tanh(v / speed)
-    along = direction * x ** int(shape["power"])
+    along = direction
+    for _ in range(int(shape["power"])):  # numpy's power takes twenty times as long
+        along = along * x
     if shape["width"] == 0.0:
         return np.asarray(along)
     beyond = (x - shape["place"]) / shape["width"]
