@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from models.terms.trials import chosen_parameters, trial_shapes, trial_size
 
 _TESTS = 32  # of a campaign, from which a gain may have changed
 _FEW_TESTS = 4.0  # in which a gradual change is not told from a jump
+_SOFT = 0.1  # of a play's gap, over which flanks of rubber are met
 _MOST_OWN = 64  # tests, of which each may have its own value
 
 
@@ -212,12 +214,13 @@ def _stop(scales: Scales) -> list[Variant]:
 def _backlash(scales: Scales) -> list[Variant]:
     return [
         _one(
-            "backlash", 3, gap=float(g * scales.displacement), contact=k * scales.omega,
-            loss=loss, inside=0.0,
+            "backlash", 4 if soft else 3, gap=float(g * scales.displacement),
+            contact=k * scales.omega, loss=loss, inside=0.0, softness=soft,
         )
         for g in np.geomspace(1e-4, 0.3, 11)
-        for k in (4.0, 12.0, 30.0)
-        for loss in (0.15, 0.5)
+        for k, loss, soft in (
+            *product((4.0, 12.0, 30.0), (0.15, 0.5), (0.0,)), (12.0, 0.5, _SOFT), (40.0, 0.5, _SOFT)
+        )
     ]
 
 

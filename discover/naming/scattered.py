@@ -22,7 +22,9 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import Shape
 
-_NEAR = {"contact": 6.0, "gap": 1.5, "limit": 1.35}  # factors of what a fit found, either way
+_NEAR = {  # factors of what a fit found, either way
+    "contact": 6.0, "gap": 1.5, "limit": 1.35, "softness": 3.0,
+}
 _LOSSES = (0.02, 1.0)
 _LAGS = (0.01, 0.5)  # of a valve, over the greatest angular frequency
 _AT_ONCE = 0.3  # of the shapes, that a valve closes without a lag in
@@ -106,7 +108,7 @@ class _Box:
     @classmethod
     def around(cls, joint: FittedTerm, omega: float) -> _Box:
         """Return the box around a joint."""
-        names = [*(n for n in _NEAR if n in joint.shape), "loss"]
+        names = [*(n for n in _NEAR if joint.shape.get(n, 0.0) > 0.0), "loss"]
         names += ["lag"] if "lag" in joint.shape else []
         return cls(joint, tuple(names), omega)
 

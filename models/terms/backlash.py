@@ -12,14 +12,17 @@ from models.terms.term import ForceOf, Parameter, Shape, Term
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
     """Return the force through a joint with play; `coefficient` 1 is all of what it changes.
 
-    The flanks' contact has the natural frequency `contact` (rad/s) with the device's mass.
+    The flanks' contact has the natural frequency `contact` (rad/s) with the device's mass. With
+    `softness` they are met gradually, over that share of the gap, as those of a rubber bushing.
     """
     force = force_of(motion)
     device = device_of(force, motion, force_of)
     stiffness = float(device[0]) * shape["contact"] ** 2
     if stiffness <= 0.0:
         return force
-    joint = Joint(stiffness, shape["loss"], gap=shape["gap"], fluid_only=shape["inside"] > 0.0)
+    gap = shape["gap"]
+    soft, inside = gap * shape["softness"], shape["inside"] > 0.0
+    joint = Joint(stiffness, shape["loss"], gap=gap, soft=soft, fluid_only=inside)
     return np.asarray(force + coefficient * (through_joint(force, motion, joint, device) - force))
 
 
@@ -34,6 +37,7 @@ TERM = Term(
         Parameter("contact", 10.0, 1e4, 600.0, "rad/s", "", "log"),
         Parameter("loss", 0.0, 1.0, 0.2, ""),
         Parameter("inside", 0.0, 1.0, 0.0, ""),
+        Parameter("softness", 0.0, 1.0, 0.0, ""),
     ),
     nonnegative=True,
     mistaken_for=("hysteresis", "coulomb-friction", "series-compliance"),

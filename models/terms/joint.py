@@ -19,6 +19,7 @@ _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle with
 _LEAST_INNER, _MOST_INNER = 4, 60
 _MOST_STEPS = 1_000_000  # of one pass: a stiffer joint is as stiff as they can follow
 _ADDED_MASS = 1e-3  # of what would make the whole force: a damper's own time can't be stepped
+_FAR = 15.0  # widths from a soft flank, where it is met or not
 _NEWTON = 2  # steps for the speed after friction
 _WIDE = 3.0  # ranges of reversal, beyond which friction is whole
 
@@ -33,6 +34,8 @@ class Joint:
     """Damping over twice the critical damping of the device's mass on the stiffness."""
     gap: float = 0.0
     """m, whole play."""
+    soft: float = 0.0
+    """m of play over which its flanks are met, as by rubber or an oil film; 0 for hard ones."""
     lower: float = -np.inf
     """N, least force that it carries."""
     upper: float = np.inf
@@ -89,8 +92,8 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, spring, stiffness,
-        damping, 0.5 * joint.gap, joint.lower, joint.upper, int(joint.refilled), joint.lag,
-        joint.half_load, joint.load_share, joint.load_side, passes,
+        damping, 0.5 * joint.gap, joint.soft, joint.lower, joint.upper, int(joint.refilled),
+        joint.lag, joint.half_load, joint.load_share, joint.load_side, passes,
     )
     return np.asarray(force + carried - rigid)
 
@@ -104,8 +107,8 @@ def _size(values: Array) -> float:
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, spring: float, stiffness: float, damping: float, half: float,
-    lower: float, upper: float, refilled: int, lag: float, half_load: float, taken: float,
-    load_side: float, passes: int,
+    soft: float, lower: float, upper: float, refilled: int, lag: float, half_load: float,
+    taken: float, load_side: float, passes: int,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps."""
     size = x.size
@@ -145,6 +148,10 @@ def _step(
                     softer = 1.0 - taken + taken * (half_load / (half_load + force)) ** 2
                     force = force if depth > 0.0 else -force
                     force += damping / np.sqrt(softer) * (pace - now)
+                elif soft > 0.0:
+                    deep, other = (depth - half) / soft, (-depth - half) / soft
+                    force = stiffness * soft * (_softplus(deep) - _softplus(other))
+                    force += damping * (_logistic(deep) + _logistic(other)) * (pace - now)
                 elif depth > half:
                     force = stiffness * (depth - half) + damping * (pace - now)
                     force = max(force, 0.0) if half > 0.0 else force
@@ -192,6 +199,22 @@ def _step(
                 position, speed = before[0, 0] + x[0], before[0, 1]
                 known = 0
     return result
+
+
+@njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+def _softplus(value: float) -> float:
+    """Return the logarithm of 1 + exp(value): 0 far below zero, the value itself far above."""
+    if value > _FAR:
+        return value
+    return float(np.log1p(np.exp(value))) if value > -_FAR else 0.0
+
+
+@njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+def _logistic(value: float) -> float:
+    """Return the slope of `_softplus`."""
+    if value > _FAR:
+        return 1.0
+    return float(1.0 / (1.0 + np.exp(-value))) if value > -_FAR else 0.0
 
 
 @njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
