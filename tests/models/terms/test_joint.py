@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import harmonic_motion
@@ -11,9 +12,10 @@ from models.terms.joint_device import device_of
 MASS, VISCOUS = 200.0, 900.0
 
 
-def motion(frequency, amplitude=0.008):
+def motion(frequency, amplitude=0.008, samples=1024):
     """Return one cycle with a little of the second and third harmonic."""
-    return harmonic_motion(amplitude * np.array([0.0, -1j, 0.04, 0.01]), frequency, samples=1024)
+    lines = amplitude * np.array([0.0, -1j, 0.04, 0.01])
+    return harmonic_motion(lines, frequency, samples=samples)
 
 
 @pytest.mark.parametrize("frequency", [0.3, 1.5, 3.0, 6.0])
@@ -94,3 +96,47 @@ def test_the_device_that_fits_a_force_is_the_one_that_made_it(reversal):
 def test_a_force_that_is_not_finite_has_no_device():
     given = motion(1.0)
     assert not np.any(device_of(np.full(given.time.size, np.nan), given))
+
+
+def driven(given, frequency, carried):
+    """Return the steady force that a joint carries before a mass with a damper, stepped by SciPy.
+
+    `carried` is its force by how much the driven end is ahead of the mass, in m and in m/s.
+    """
+    lines = np.fft.rfft(given.displacement) / given.time.size
+    turns = 2j * np.pi * frequency * np.arange(4)
+
+    def ahead(time, state):
+        wave = 2.0 * lines[:4] * np.exp(turns * time)
+        return np.sum(wave[1:].real) - state[0], np.sum((turns * wave)[1:].real) - state[1]
+
+    def slope(time, state):
+        return state[1], (carried(*ahead(time, state)) - VISCOUS * state[1]) / MASS
+
+    start = (given.displacement[0] - given.displacement.mean(), given.velocity[0])
+    times = (6.0 + np.arange(given.time.size) / given.time.size) / frequency
+    found = solve_ivp(
+        slope, (0.0, times[-1]), start, method="LSODA", t_eval=times, rtol=1e-8, atol=1e-10,
+        max_step=1e-3,
+    )
+    return np.array([carried(*ahead(t, y)) for t, y in zip(times, found.y.T, strict=True)])
+
+
+@pytest.mark.parametrize("soft", [2e-5, 1e-4, 5e-4])
+def test_soft_flanks_are_those_that_an_integrator_of_others_meets(soft):
+    given, frequency, gap, stiffness, loss = motion(1.2, samples=8192), 1.2, 8e-4, 8e5, 0.4
+    damping = 2.0 * loss * np.sqrt(stiffness * MASS)
+
+    def carried(depth, pace):
+        near = np.array([depth - 0.5 * gap, -depth - 0.5 * gap]) / soft
+        pushed = soft * np.logaddexp(0.0, near)
+        return stiffness * (pushed[0] - pushed[1]) + damping * pace * np.sum(
+            1.0 / (1.0 + np.exp(-near))
+        )
+
+    force = MASS * given.acceleration + VISCOUS * given.velocity
+    joint = Joint(stiffness, loss, gap=gap, soft=soft)
+    found = through_joint(force, given, joint, device_of(force, given))
+    exact = driven(given, frequency, carried)
+    assert np.std(exact - force) > 0.02 * np.std(force)
+    assert np.std(found - exact) < 0.02 * np.std(exact - force)
