@@ -220,7 +220,7 @@ def _tried(
     earlier = [r.effect for r in left.rounds if r.effect in {t.id for t in fit.model.terms}]
     fit, dropped = without_superfluous(fitted, fit, earlier)
     after = stage(rows, fit)
-    if not _helps(rows, now, after):
+    if not _helps(rows, now, after) and not _shows(rows, fitted, now, after):
         return _Next(_refused(rows, now, contest, name), rejected=name)
     return _Next(contest, Round(name, contest, now, after, dropped))
 
@@ -242,6 +242,20 @@ def _helps(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
         for at in (before, after)
     )
     return now < (1.0 - _CLEARLY) * was
+
+
+def _shows(
+    rows: Sequence[RecordRows], fitted: Sequence[RecordRows], before: Stage, after: Stage
+) -> bool:
+    """Tell whether records agree that an effect is there, however little of the gap it makes."""
+    gained = misfits(fitted, before.fit) - misfits(fitted, after.fit)
+    risen = seen_gap(rows, after) > (1.0 + _NOTICED) * seen_gap(rows, before)
+    return _by_several(gained) and not risen
+
+
+def _by_several(gained: Array) -> bool:
+    """Tell whether chi-square that records gain is no single record's."""
+    return gained.size >= _SEVERAL and float(gained.sum() - gained.max()) >= _OF_OTHERS
 
 
 def _refused(rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str) -> Contest:
@@ -277,8 +291,7 @@ def _one_stands_out(
     named = fits.get(contest.ranked[0][0])
     if named is None:
         return True
-    gained = before - misfits(fitted, named)
-    return float(gained.sum() - gained.max()) < _OF_OTHERS
+    return not _by_several(before - misfits(fitted, named))
 
 
 def _weighed(
