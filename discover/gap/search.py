@@ -213,7 +213,7 @@ def _tried(
     fit = mended(fitted, now.fit, contest, name, begun)
     gained = now.fit.chi2 - fit.chi2
     if gained < max(_TOO_LITTLE * contest.excess, _FEWEST) or pulls(fit.model, name):
-        return _Next(_refused(rows, now, contest, name))
+        return _Next(contest.without(name, None if _beyond(rows, now) else AGREES))
     same = with_member(fitted, now.fit, [r.effect for r in left.rounds]) if left.curves else None
     if same is not None and same[1].chi2 < fit.chi2:
         return _Next(contest.without(name), waits=True)
@@ -221,7 +221,8 @@ def _tried(
     fit, dropped = without_superfluous(fitted, fit, earlier)
     after = stage(rows, fit)
     if not _helps(rows, now, after) and not _shows(rows, fitted, now, after):
-        return _Next(_refused(rows, now, contest, name), rejected=name)
+        refused = contest.without(name) if _beyond(rows, now) else contest.in_doubt(name)
+        return _Next(refused, rejected=name)
     return _Next(contest, Round(name, contest, now, after, dropped))
 
 
@@ -256,14 +257,6 @@ def _shows(
 def _by_several(gained: Array) -> bool:
     """Tell whether chi-square that records gain is no single record's."""
     return gained.size >= _SEVERAL and float(gained.sum() - gained.max()) >= _OF_OTHERS
-
-
-def _refused(rows: Sequence[RecordRows], at: Stage, contest: Contest, name: str) -> Contest:
-    """Return the contest without an effect that leaves a gap beyond the noise as it is.
-
-    Where no record's gap is more than noise, what is left is too little to matter.
-    """
-    return contest.without(name, None if _beyond(rows, at) else AGREES)
 
 
 def _beyond(rows: Sequence[RecordRows], at: Stage) -> bool:

@@ -89,7 +89,7 @@ class Contest:
         return replace(self, probabilities=chances)
 
     def in_doubt(self, effect: str) -> Contest:
-        """Return the contest when what an effect explains may be one record's noise.
+        """Return the contest when what an effect explains may be noise, or is too little to matter.
 
         The model then agrees with the probability that the effect had. What is left goes to all
         names, in proportion.
@@ -227,8 +227,15 @@ def _screened(
 
 
 def _can_show(v: Variant, terms: set[str]) -> bool:
-    """Tell whether a shape is told apart: friction near a place from friction all along."""
-    return not v.parts[0].shape.get("width", 0.0) or "coulomb-friction" in terms
+    """Tell whether a shape is told apart.
+
+    Friction near a place is only from friction all along, and values of every test's own are not
+    from the times at which a joint's flanks are met.
+    """
+    shape = v.parts[0].shape
+    if shape.get("only", 0.0) and any(is_joint(t) for t in terms):
+        return False
+    return not shape.get("width", 0.0) or "coulomb-friction" in terms
 
 
 def _starts(singles: Sequence[Entry]) -> dict[str, tuple[Entry, ...]]:
