@@ -1,11 +1,15 @@
 """Where the rounds of a gap search start and end."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from discover.gap import close_gap
+from discover.gap.accuracy import Misfit
+from discover.gap.search import _shows
+from discover.gap.stages import Stage
 from models.constitutive import FittedTerm, ForceModel
 from tests.discover.gap_data import campaign, device
 
@@ -154,3 +158,25 @@ def test_a_line_in_one_record_within_its_noise_is_no_effect():
 def test_a_line_far_above_the_noise_of_one_record_counts():
     found = close_gap(with_a_line([2], 0.05), "fit:inertia,viscous-damping")
     assert found.verdict != "agrees"
+
+
+@pytest.mark.parametrize(("gained", "gap", "shown"), [
+    ([20.0] * 5, 1.001, True),  # the noise of a drifting force may move the gap a little
+    ([20.0] * 5, 1.02, False),
+    ([200.0, 5.0, 5.0, 5.0, 5.0], 0.999, False),
+    ([40.0] * 3, 0.999, False),
+])
+def test_an_effect_shows_where_several_records_gain_and_the_gap_does_not_grow(gained, gap, shown):
+    size = 50
+    rows = [
+        SimpleNamespace(target=np.zeros(size), observation=SimpleNamespace(held_out=False))
+        for _ in gained
+    ]
+
+    def at(beyond, error):
+        residual = np.concatenate([np.full(size, np.sqrt(1.0 + b / size)) for b in beyond])
+        found = tuple(Misfit(error**2, 1e4, 1.0, 1000) for _ in gained)
+        return Stage(SimpleNamespace(residual=residual), found, ())
+
+    before, after = at(gained, 1.0), at(np.zeros(len(gained)), gap)
+    assert _shows(rows, rows, before, after) is shown
