@@ -150,8 +150,10 @@ def _step(
                     force += damping / np.sqrt(softer) * (pace - now)
                 elif soft > 0.0:
                     deep, other = (depth - half) / soft, (-depth - half) / soft
-                    force = stiffness * soft * (_softplus(deep) - _softplus(other))
-                    force += damping * (_logistic(deep) + _logistic(other)) * (pace - now)
+                    pressed, bearing = _flank(deep)
+                    pulled, behind = _flank(other)
+                    force = stiffness * soft * (pressed - pulled)
+                    force += damping * (bearing + behind) * (pace - now)
                 elif depth > half:
                     force = stiffness * (depth - half) + damping * (pace - now)
                     force = max(force, 0.0) if half > 0.0 else force
@@ -202,19 +204,14 @@ def _step(
 
 
 @njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
-def _softplus(value: float) -> float:
-    """Return the logarithm of 1 + exp(value): 0 far below zero, the value itself far above."""
+def _flank(value: float) -> tuple[float, float]:
+    """Return the logarithm of 1 + exp(value) and its slope: 0 far from a flank, linear beyond."""
     if value > _FAR:
-        return value
-    return float(np.log1p(np.exp(value))) if value > -_FAR else 0.0
-
-
-@njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
-def _logistic(value: float) -> float:
-    """Return the slope of `_softplus`."""
-    if value > _FAR:
-        return 1.0
-    return float(1.0 / (1.0 + np.exp(-value))) if value > -_FAR else 0.0
+        return value, 1.0
+    if value < -_FAR:
+        return 0.0, 0.0
+    grown = np.exp(value)
+    return np.log1p(grown), grown / (1.0 + grown)
 
 
 @njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
