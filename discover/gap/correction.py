@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.gap.accuracy import pooled
-from discover.gap.stages import Stage, left_out, stage
+from discover.gap.stages import Stage, left_out, record_misfit, stage
 from discover.naming.candidates import Part, Variant, variants
 from discover.naming.columns import candidate_columns, without_span
 from discover.naming.fit import ITERATIONS, ModelFit, fit_model, free_parameters
@@ -33,6 +33,7 @@ _WORTH = 0.05  # of the gap of records that were left out, that a correction has
 _LEAST = 0.02  # of the misfit, that a member has to explain
 _FEWEST = 20.0  # of chi-square, that it has to explain too
 _STEPS_BESIDE_JOINT = 6
+_MOST_BESIDE_JOINT = 2  # members
 _APART = 1e-4  # of a member's own square, that it has to add to what the model spans
 
 
@@ -82,6 +83,7 @@ def corrected(
         return None
     best, nearest = None, pooled(unseen)
     fit, names = now.fit, list[str]()
+    most = min(most, _MOST_BESIDE_JOINT) if has_joint(fit.model) else most
     while len(names) < most and nearest > _CLOSE * floor:
         found = with_member(fitted, fit, effects)
         if found is None:
@@ -92,6 +94,9 @@ def corrected(
             break
         fit = trial
         names.append(name)
+        met = pooled([record_misfit(r, fit.model) for r in fitted])
+        if met > (1.0 - 0.5 * _WORTH) * pooled(seen):
+            continue  # what fitted records hardly gain those left out do not
         gap = pooled(left_out(fitted, fit))
         if gap < (1.0 - _WORTH) * nearest:
             best, nearest = (tuple(names), fit), gap

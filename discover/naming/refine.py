@@ -25,6 +25,8 @@ _ENDED = 2  # kinds of the first effect's force, that are fitted to the end
 _ITERATIONS = 8
 _ENOUGH = 0.02
 _SPRING = 8.0  # times the play, that its flanks give under the greatest force
+_BEARS = 0.25  # of the stiffness under the greatest force, that a play has in its middle at most
+_FAR = 30.0  # widths from a soft flank, where it is linear
 _WITHIN = 60.0  # nats behind the best that adds one effect, within which another is refined
 _SURE = 0.9  # of agreement: no shape changes that
 _HOPELESS = 0.95  # of the misfit, that an added force leaves: no shape near it leaves much less
@@ -127,7 +129,10 @@ def _hopeless(entry: Entry, contest: Contest) -> bool:
 
 
 def is_a_spring(rows: Sequence[RecordRows], model: ForceModel) -> bool:
-    """Tell whether the last term is a play so small beside what its flanks give that it is none."""
+    """Tell whether the last term is no play but a spring.
+
+    So it is where its flanks give far more than it plays, and where soft ones bear in its middle.
+    """
     play = model.terms[-1]
     if play.id != "backlash":
         return False
@@ -135,7 +140,28 @@ def is_a_spring(rows: Sequence[RecordRows], model: ForceModel) -> bool:
     mass = sum(t.coefficient for t in terms if t.id == "inertia")
     stiffness = mass * play.shape["contact"] ** 2
     force = max(float(np.abs(r.observation.measured).max()) for r in rows)
-    return stiffness > 0.0 and force > _SPRING * stiffness * play.shape["gap"]
+    gap, softness = play.shape["gap"], play.shape["softness"]
+    if stiffness <= 0.0:
+        return False
+    return force > _SPRING * stiffness * gap or _bearing(force / stiffness / gap, softness) > _BEARS
+
+
+def _bearing(force: float, softness: float) -> float:
+    """Return how stiff soft flanks are in the middle of a play, over how they are under a force.
+
+    Lengths are shares of the play, the force is what it bends a flank by.
+    """
+    if softness == 0.0:
+        return 0.0
+    half, pressed = 0.5 / softness, force / softness  # in widths
+    far = np.exp(-half)
+    if pressed > _FAR:
+        depth = half + pressed
+    else:  # where log((1 + far e^depth) / (1 + far e^-depth)) is `pressed`
+        grown = np.expm1(pressed)
+        root = np.hypot(grown, 2.0 * far * np.exp(0.5 * pressed))
+        depth = float(np.log((grown + root) / (2.0 * far)))
+    return float(2.0 * far / (1.0 + far) * depth / pressed)
 
 
 @dataclass(frozen=True)
@@ -200,7 +226,10 @@ def _fit(
             units=UnitRows(),
         )
         return frozen.whole(found)
+    parameters, own = free_parameters(model), len(model.terms) - 1
+    if steps == _FIRST_STEPS and any(is_joint(t.id) for t in model.terms[:-1]):
+        # Behind a joint each costs a simulation: which kind is best shows before they move.
+        parameters = tuple(p for p in parameters if p.shape is None or p.term == own)
     return fit_model(
-        rows, model, free_parameters(model), iterations=steps, enough=_ENOUGH, units=units,
-        exact=False,
+        rows, model, parameters, iterations=steps, enough=_ENOUGH, units=units, exact=False
     )

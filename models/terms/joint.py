@@ -15,6 +15,7 @@ from models.motion import Motion
 _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
 _SETTLED = 5e-4
+_LEAD = 4  # of a cycle this part is stepped ahead: most joints forget within it how they began
 _SHORT = 2048  # samples of one cycle; longer periods of many cycles settle within one
 _LEAST_INNER, _MOST_INNER = 4, 60
 _MOST_STEPS = 1_000_000  # of one pass: a stiffer joint is as stiff as they can follow
@@ -113,7 +114,8 @@ def _step(
     """Return the force that the joint carries, (N,), mean over each sample's inner steps."""
     size = x.size
     result = np.empty(size)
-    position, speed, slipped = x[0], v[0], 0.0
+    start = size - size // _LEAD if passes > 1 and refilled == 0 else 0
+    position, speed, slipped = x[start], v[start], 0.0
     pace_limit = np.max(np.abs(v))
     h = step / inner
     brake = h * dry / mass
@@ -121,10 +123,10 @@ def _step(
     before = np.zeros((3, 2))  # what the last cycles began with
     known = 0  # of them
     limit = 0.0
-    for turn in range(passes):
+    for turn in range(passes + 1 if start > 0 else passes):
         was, was_speed = position - x[0] + slipped, speed
         deepest = 0.0
-        for i in range(size):
+        for i in range(start, size):
             following = i + 1 if i + 1 < size else 0
             total = 0.0
             for k in range(inner):
@@ -149,11 +151,9 @@ def _step(
                     force = force if depth > 0.0 else -force
                     force += damping / np.sqrt(softer) * (pace - now)
                 elif soft > 0.0:
-                    deep, other = (depth - half) / soft, (-depth - half) / soft
-                    pressed, bearing = _flank(deep)
-                    pulled, behind = _flank(other)
-                    force = stiffness * soft * (pressed - pulled)
-                    force += damping * (bearing + behind) * (pace - now)
+                    pressed, bearing = _flanks(abs(depth) / soft, half / soft)
+                    force = stiffness * soft * (pressed if depth > 0.0 else -pressed)
+                    force += damping * bearing * (pace - now)
                 elif depth > half:
                     force = stiffness * (depth - half) + damping * (pace - now)
                     force = max(force, 0.0) if half > 0.0 else force
@@ -173,7 +173,7 @@ def _step(
                             turned_for = -1.0
                 force = min(max(force, lower), upper)
                 total += force
-                start = speed
+                begun = speed
                 resisted = (viscous + quadratic * abs(now)) * now + spring * position
                 speed += h * (force - resisted) / mass
                 free = speed  # friction implicitly: it never overshoots
@@ -185,12 +185,15 @@ def _step(
                     else:
                         speed /= 1.0 + brake / slow
                     for _ in range(_NEWTON):
-                        turned = np.tanh(speed / slow)
+                        turned = _tanh(speed / slow)
                         slope = 1.0 + brake / slow * (1.0 - turned * turned)
                         speed -= (speed + brake * turned - free) / slope
-                rate = (speed - start) / h
+                rate = (speed - begun) / h
                 position += h * speed
             result[i] = total / inner
+        if start > 0:
+            start = 0
+            continue
         moved = abs(position - x[0] + slipped - was)
         steady = moved < _SETTLED * deepest and abs(speed - was_speed) < _SETTLED * pace_limit
         if turn > 0 and steady:
@@ -204,14 +207,31 @@ def _step(
 
 
 @njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
-def _flank(value: float) -> tuple[float, float]:
-    """Return the logarithm of 1 + exp(value) and its slope: 0 far from a flank, linear beyond."""
-    if value > _FAR:
-        return value, 1.0
-    if value < -_FAR:
+def _flanks(depth: float, half: float) -> tuple[float, float]:
+    """Return how far both flanks are pressed in, and the slope of that; in widths, depth from 0.
+
+    A flank is met along the logarithm of 1 + exp(depth): 0 far from it, linear beyond.
+    """
+    near = depth - half
+    if near > _FAR:
+        return near, 1.0
+    if near < -_FAR:
         return 0.0, 0.0
-    grown = np.exp(value)
-    return np.log1p(grown), grown / (1.0 + grown)
+    grown = np.exp(near)
+    if depth + half > _FAR:
+        return np.log(1.0 + grown), grown / (1.0 + grown)
+    other = np.exp(-depth - half)
+    pressed = np.log((1.0 + grown) / (1.0 + other))
+    return pressed, grown / (1.0 + grown) + other / (1.0 + other)
+
+
+@njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+def _tanh(value: float) -> float:
+    """Return the hyperbolic tangent to 2e-6 up to `_WIDE`, from its continued fraction."""
+    s = value * value
+    above = 135135.0 + s * (17325.0 + s * (378.0 + s))
+    below = 135135.0 + s * (62370.0 + s * (3150.0 + s * 28.0))
+    return min(max(value * above / below, -1.0), 1.0)
 
 
 @njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]

@@ -26,7 +26,7 @@ SHAPES = {
     "sensor-clipping": {"limit": 40.0},
     "sensor-gain": {"threshold": 10.0},
     "cavitation": {"limit": 40.0, "contact": 300.0},
-    "backlash": {"gap": 1e-3, "contact": 300.0},
+    "backlash": {"gap": 1e-3, "contact": 300.0, "loss": 0.5},
     "series-compliance": {"loss": 0.1},
 }
 COEFFICIENT = {"series-compliance": 1e-5, "time-delay": 3e-3, "cavitation": 0.8, "sensor-gain": 0.1}

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from discover.motion_fit import observe
 from discover.naming.fit import fit_model, free_parameters
@@ -114,6 +115,25 @@ def test_a_play_far_smaller_than_what_its_flanks_give_is_a_spring(play, gap, con
     held = [replace(r, held=DEVICE) for r in play]
     assert is_a_spring(held, ForceModel((joint,))) is spring
     assert not is_a_spring(play, ForceModel(DEVICE))
+
+
+@pytest.mark.parametrize("softness", [0.03, 0.08, 0.15, 0.4, 1.0])
+@pytest.mark.parametrize("contact", [400.0, 1800.0])
+def test_soft_flanks_that_bear_in_the_middle_of_a_play_are_a_spring(play, softness, contact):
+    """As far as a fitted law of a joint goes, it then only stiffens; solved for by SciPy."""
+    shape = {**PLAY, "contact": contact, "softness": softness}
+    stiffness = DEVICE[0].coefficient * contact**2
+    greatest = max(np.abs(r.observation.measured).max() for r in play)
+    width = softness * PLAY["gap"]
+
+    def law(depth):
+        flanks = (np.logaddexp(0.0, (s * depth - 0.5 * PLAY["gap"]) / width) for s in (1.0, -1.0))
+        return stiffness * width * float(np.subtract(*flanks))
+
+    under = brentq(lambda depth: law(depth) - greatest, 0.0, PLAY["gap"] + greatest / stiffness)
+    middle, secant = law(1e-9) / 1e-9, greatest / under
+    joint = FittedTerm("backlash", 1.0, shape)
+    assert is_a_spring(play, ForceModel((*DEVICE, joint))) is bool(middle > 0.25 * secant)
 
 
 TORN = {
