@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from discover.gap import close_gap
 from discover.records import Campaign
@@ -20,6 +21,9 @@ _AMPLITUDES = (0.003, 0.006, 0.012, 0.020)
 _FREQUENCIES = (0.3, 0.8, 2.0, 5.0)
 _CYCLES = 8.3
 _SIZES = (2_500, 10_000)
+_GAP, _FLANK, _LOSS = 4e-5, 3e8, 2e5
+"""m of play on either side, N/m and N s/m of what it ends at."""
+_PERIODS, _POINTS = 5, 4096
 _TERMS = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
 
 
@@ -27,6 +31,8 @@ def campaign(samples: int, hidden: str) -> Campaign:
     """Return 16 tests of a laminar device with something hidden, 1 % noise."""
 
     def law(omega: float, angle: Array, x: Array, v: Array) -> Array:
+        if hidden == "play":
+            return _through_play(omega, angle, float(np.hypot(x, v / omega).max()))
         force = -300.0 * omega**2 * x + 2e3 * v + 2e4 * v * np.abs(v) + 300.0 * np.tanh(v / 1e-3)
         if hidden == "stiffness":
             force += 4e4 * x
@@ -41,10 +47,35 @@ def campaign(samples: int, hidden: str) -> Campaign:
     return Campaign("16 tests", records, content_hash="0")
 
 
+def _through_play(omega: float, angle: Array, amplitude: float) -> Array:
+    """Return the force (N,) of the same device, without its friction, behind play; by SciPy."""
+
+    def carried(turned: Array, place: Array, speed: Array) -> Array:
+        depth, pace = amplitude * np.sin(turned) - place, amplitude * omega * np.cos(turned) - speed
+        beyond = depth - np.clip(depth, -_GAP, _GAP)
+        force = _FLANK * beyond + _LOSS * pace * (beyond != 0.0)
+        return np.where(beyond > 0.0, np.maximum(force, 0.0), np.minimum(force, 0.0))
+
+    def slope(turned: float, state: Array) -> tuple[float, float]:
+        place, speed = state
+        resisted = 2e3 * speed + 2e4 * speed * abs(speed)
+        pull = float(carried(np.float64(turned), place, speed)) - resisted
+        return speed / omega, pull / 300.0 / omega
+
+    turn = 2.0 * np.pi
+    at = turn * (_PERIODS - 1 + np.arange(_POINTS + 1) / _POINTS)
+    found = solve_ivp(
+        slope, (0.0, at[-1]), (0.0, amplitude * omega), method="LSODA", t_eval=at, rtol=1e-6,
+        atol=1e-10, max_step=turn / 1000.0,
+    )  # fmt: skip
+    cycle = carried(at, *found.y)
+    return np.interp(np.mod(angle, turn), at - at[0], cycle)
+
+
 def rows() -> Iterator[Row]:
     """Yield all rows."""
     close_gap(campaign(1_000, "stiffness"), _TERMS)  # compiles
-    for hidden in ("nothing", "stiffness", "lag"):
+    for hidden in ("nothing", "stiffness", "lag", "play"):
         for samples in _SIZES:
             tests = campaign(samples, hidden)
             begin = time.perf_counter()
