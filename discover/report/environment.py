@@ -20,13 +20,17 @@ _OF_A_TEST = ("over", "only")
 
 
 def unit(text: str) -> Markup:
-    r"""Return a unit with raised exponents, as HTML.
+    r"""Return a unit with raised exponents, as HTML; nothing for a plain number's, "1".
 
     Examples
     --------
     >>> str(unit("N s^1.89/m"))
     'N\xa0s<sup>1.89</sup>/m'
+    >>> str(unit("1"))
+    ''
     """
+    if text == "1":
+        return Markup("")
     plain = str(escape(text)).replace("*", "·").replace(" ", "\u00a0")
     return Markup(re.sub(r"\^([-\d.]+)", r"<sup>\1</sup>", plain))
 
