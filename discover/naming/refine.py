@@ -228,7 +228,7 @@ def _fit(
         return frozen.whole(found)
     parameters, own = free_parameters(model), len(model.terms) - 1
     if steps == _FIRST_STEPS and any(is_joint(t.id) for t in model.terms[:-1]):
-        # Behind a joint each costs a simulation: which kind is best shows before they move.
+        # Each shape before costs simulations of the joint: which kind is best shows without.
         parameters = tuple(p for p in parameters if p.shape is None or p.term == own)
     return fit_model(
         rows, model, parameters, iterations=steps, enough=_ENOUGH, units=units, exact=False
