@@ -6,22 +6,38 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.special import gamma, roots_genlaguerre
 
 from discover.motion_fit import Observation
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
 from models.terms import TERMS, Shape, Term
+from models.terms.sensor_gain import low_passed_cycle
 from models.terms.time_delay import between_samples, delay_at
 
 DELAY = "time-delay"
 _BEYOND = 4  # samples beyond a delay, that a spline needs
+_RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant shows on it
+_REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ
+_MOST_LOST = 16  # samples in a row
+_NODES = 6  # earlier moments of which a filtered force is summed
 
 
 def needs_cycle(term: Term, shape: Shape) -> bool:
     """Tell whether a term has memory: it then sees one cycle of the steady state."""
     remembers = term.follows == "path" or shape.get("presliding", 0.0) > 0.0
     return term.acts != "force" or remembers
+
+
+def behind_filter(shape: Shape) -> bool:
+    """Tell whether a sensor's gain acts behind a low-pass."""
+    return shape.get("filter_time", 0.0) > 0.0
+
+
+def at_samples(term: Term, shape: Shape) -> bool:
+    """Tell whether a term is evaluated at the samples: what shifts them, or changes meanwhile."""
+    return term.id == DELAY or behind_filter(shape) or in_record(term, shape)
 
 
 def has_joint(model: ForceModel) -> bool:
@@ -116,6 +132,13 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
         rest = ForceModel(tuple(t for t in model.terms if t not in gains))
         force = model_force(observation, rest)
         return ForceModel(tuple(gains)).changed(lambda _: force, observation.motion)
+    filtered = [t for t in model.terms if behind_filter(t.shape)]
+    if filtered and observation.late is not None:
+        rest = ForceModel(tuple(t for t in model.terms if t not in filtered))
+        force = model_force(observation, rest)
+        for t in filtered:
+            force = force + t.coefficient * _low_passed(observation, rest, t.shape)
+        return force
     delays = [t for t in model.terms if t.id == DELAY]
     if delays and observation.late is not None:
         rest = ForceModel(tuple(t for t in model.terms if t.id != DELAY))
@@ -124,7 +147,7 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
         degree = int(max(t.shape.get("resampled", 0.0) for t in delays))
         if degree:
             return _aligned(observation, rest, delay, degree)
-        return model_force(replace(observation, motion=observation.late(delay)), rest)
+        return model_force(_shifted(observation, delay), rest)
     motion, cycle = observation.motion, observation.cycle
     if cycle is None or not any(needs_cycle(t.term, t.shape) for t in model.terms):
         return model.force(motion)
@@ -133,26 +156,70 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
     return plain.force(motion) + _from_cycle(observation, change)
 
 
+def _low_passed(observation: Observation, model: ForceModel, shape: Shape) -> Array:
+    """Return the force behind a gain's low-pass, at a sine test's samples.
+
+    The cycle's grid shows it where it is fine enough. Otherwise the force of earlier moments is
+    summed with the filter's impulse response as weights, by Gauss's rule for them.
+    """
+    cycle, time_constant = observation.cycle, shape["filter_time"]
+    if cycle is not None and time_constant > _RESOLVED * cycle.step:
+        force = steady_part(model).force(cycle)
+        return _from_cycle(observation, low_passed_cycle(force, cycle.step, shape))
+    result = np.zeros_like(observation.motion.displacement)
+    for ago, weight in zip(*roots_genlaguerre(_NODES, shape["filter_order"] - 1.0), strict=True):
+        earlier = _shifted(observation, ago * time_constant)
+        result += weight / gamma(shape["filter_order"]) * model_force(earlier, model)
+    return result
+
+
+def _shifted(observation: Observation, delay: float) -> Observation:
+    """Return a sine test whose samples are taken some seconds earlier in its motion."""
+    late = observation.late
+    if late is None:
+        raise ValueError("only a sine test's motion is known at other moments")
+    return replace(observation, motion=late(delay), late=lambda more: late(delay + more))
+
+
 def _aligned(
     observation: Observation, model: ForceModel, delay: float, degree: int
 ) -> Array:
     """Return the force as shifted by a spline through samples, some of them beyond the record."""
-    time, force = observation.motion.time, model_force(observation, model)
+    own = observation.motion.time
     if observation.late is None:
-        return between_samples(force, time, delay, degree)
-    step = float(np.median(np.diff(time)))
-    count = min(int(abs(delay) / step) + _BEYOND, time.size)
-    if delay < 0.0:
-        span = float(time[-1] - time[-count]) + step
-        other = model_force(replace(observation, motion=observation.late(-span)), model)
-        force = np.concatenate([force, other[-count:]])
-        whole = np.concatenate([time, time[-count:] + span])
-        return between_samples(force, whole, delay, degree)[: time.size]
-    span = float(time[count - 1] - time[0]) + step
-    other = model_force(replace(observation, motion=observation.late(span)), model)
-    force = np.concatenate([other[:count], force])
-    whole = np.concatenate([time[:count] - span, time])
-    return between_samples(force, whole, delay, degree)[count:]
+        return between_samples(model_force(observation, model), own, delay, degree)
+    time, force = _with_lost_samples(observation, model)
+    step = float(np.median(np.diff(own)))
+    count = min(int(abs(delay) / step) + _BEYOND, own.size)
+    first, last = (slice(0, 0), slice(-count, None)) if delay < 0.0 else (slice(count), slice(0, 0))
+    before = own[first] - (own[count - 1] - own[0] + step)
+    after = own[last] + (own[-1] - own[-count] + step)
+    away = (after[0] - own[-count]) if delay < 0.0 else (before[0] - own[0])
+    other = model_force(_shifted(observation, -float(away)), model)
+    force = np.concatenate([other[first], force, other[last]])
+    whole = np.concatenate([before, time, after])
+    found = between_samples(force, whole, delay, degree)
+    return found[np.searchsorted(whole, own)]
+
+
+def _with_lost_samples(observation: Observation, model: ForceModel) -> tuple[Array, Array]:
+    """Return times and the force at them, with those that a record lost of regular samples."""
+    time, force = observation.motion.time, model_force(observation, model)
+    spacing = np.diff(time)
+    step = float(np.median(spacing))
+    lost = np.round(spacing / step).astype(int) - 1
+    regular = np.abs(spacing - (lost + 1) * step) < _REGULAR * step
+    most = int(lost.max(initial=0))
+    if not 0 < most <= _MOST_LOST or not regular.all():
+        return time, force
+    times, forces = [time], [force]
+    for ahead in range(1, most + 1):
+        at = np.flatnonzero(lost >= ahead)
+        times.append(time[at] + ahead * step)
+        forces.append(model_force(_shifted(observation, -ahead * step), model)[at])
+    whole, values = np.concatenate(times), np.concatenate(forces)
+    order = np.argsort(whole)
+    return whole[order], values[order]
 
 
 def steady_part(model: ForceModel) -> ForceModel:
@@ -211,7 +278,7 @@ class Trial:
 
     def on_cycle(self, term: Term, shape: Shape) -> bool:
         """Tell whether a term is evaluated over one steady cycle: all but jumps and slow change."""
-        if self.observation.cycle is None or term.id == DELAY or in_record(term, shape):
+        if self.observation.cycle is None or at_samples(term, shape):
             return False
         return needs_cycle(term, shape) or "transition_speed" not in shape
 
@@ -228,8 +295,9 @@ class Trial:
             Coefficient at which a change of input or output is tried.
         """
         share = share_in(self.observation, shape)
-        if share > 0.0 and term.id == DELAY and self.observation.late is not None:
-            late = ForceModel((*self.model.terms, FittedTerm(DELAY, probe, shape)))
+        shifts = term.id == DELAY or behind_filter(shape)
+        if share > 0.0 and shifts and self.observation.late is not None:
+            late = ForceModel((*self.model.terms, FittedTerm(term.id, share * probe, shape)))
             return (model_force(self.observation, late) - self._late_from) / probe
         cycle = self.observation.cycle if self.on_cycle(term, shape) else None
         motion = self.observation.motion if cycle is None else cycle

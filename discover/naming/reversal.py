@@ -20,7 +20,7 @@ _CURVES = (0.4, 2.5)
 _OTHER_WIDTHS = (0.03, 0.1, 0.3)
 
 
-def _friction(model: ForceModel) -> int | None:
+def reversing_friction(model: ForceModel) -> int | None:
     """Return the place of friction that reverses over a range of speed; None without one."""
     for place, t in enumerate(model.terms):
         if t.id == "coulomb-friction" and t.shape["transition_speed"] > 0.0:
@@ -30,7 +30,7 @@ def _friction(model: ForceModel) -> int | None:
 
 def reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
     """Return rows by which the curve along which friction reverses may differ from tanh."""
-    place = _friction(model)
+    place = reversing_friction(model)
     if place is None:
         return np.zeros((0, sum(r.target.size for r in rows)))
     friction = model.terms[place]
@@ -38,16 +38,17 @@ def reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
     blocks = []
     for r in rows:
         v = r.observation.motion.velocity
-        own = np.tanh(v / speed)
+        smooth, slow = np.tanh(v / speed), v / np.hypot(v, speed)
+        own = slow if friction.shape["form"] else smooth
         curves = [np.tanh(v / (s * speed)) - own for s in _CURVES]
-        curves.append(v / np.hypot(v, speed) - own)
+        curves.append((smooth if friction.shape["form"] else slow) - own)
         blocks.append(r.project(friction.coefficient * np.stack(curves)))
     return np.concatenate(blocks, axis=1)
 
 
 def with_reversal(model: ForceModel, speed: float) -> ForceModel:
     """Return the model with friction that reverses over another range of speed, m/s."""
-    place = _friction(model)
+    place = reversing_friction(model)
     if place is None:
         return model
     return with_values(model, [Parameter(place, "transition_speed")], np.array([speed]))
@@ -58,7 +59,7 @@ def other_reversals(rows: Sequence[RecordRows], fit: ModelFit) -> list[tuple[flo
 
     None where friction is not fitted, or where the model is not a sum of forces.
     """
-    place = _friction(fit.model)
+    place = reversing_friction(fit.model)
     if place is None or Parameter(place, "transition_speed") not in fit.parameters:
         return []
     if any(t.term.acts != "force" for r in rows for t in (*r.held, *fit.model.terms)):

@@ -7,10 +7,9 @@ from collections.abc import Hashable, Sequence
 import numpy as np
 
 from discover.naming.forces import (
-    DELAY,
     Trial,
+    at_samples,
     change_on_cycle,
-    in_record,
     model_force,
     of_test,
     steady_part,
@@ -103,7 +102,7 @@ class UnitRows:
             return
         whole = of_test(r.observation, whole_model(r, model))
         changes = [t for t in whole.terms if t.term.acts != "force"]
-        sampled = any(t.id == DELAY or in_record(t.term, t.shape) for t in changes)
+        sampled = any(at_samples(t.term, t.shape) for t in changes)
         if sampled or (changes and r.cycle_rows is None):
             added[:] = r.project(model_force(r.observation, whole))
         elif changes and r.cycle_rows is not None:

@@ -34,7 +34,11 @@ def curved_force(v, curves, start, stop):  # type: ignore[no-untyped-def] # noqa
     force, slope = 0.0, 0.0
     for i in range(start, stop):
         code, c, p = curves[i, 0], curves[i, 1], curves[i, 2]
-        if code == SMOOTH_FRICTION:
+        if code == SMOOTH_FRICTION and curves[i, 3] > 0.0:
+            root = np.hypot(v, p)
+            force += c * v / root
+            slope += c * p * p / root**3
+        elif code == SMOOTH_FRICTION:
             th = np.tanh(v / p)
             force += c * th
             slope += c * (1.0 - th * th) / p

@@ -162,7 +162,8 @@ def _place(
                 curves.append((END_STOP, value, side * shape["gap"], shape["exponent"]))
     elif fitted.id == "coulomb-friction":
         if shape["transition_speed"] > 0.0:
-            curves.append((SMOOTH_FRICTION, value, shape["transition_speed"], 0.0))
+            form = shape.get("form", 0.0)
+            curves.append((SMOOTH_FRICTION, value, shape["transition_speed"], form))
         else:
             row[FRICTION] += value
     elif fitted.id == "stribeck-friction":

@@ -9,8 +9,9 @@ from models.terms.term import Parameter, Shape, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return sign v, or tanh(v/v_t) where the transition speed v_t is not zero.
+    """Return sign v, or where the transition speed v_t is not zero a curve that reverses over it.
 
+    That is tanh(v/v_t), or with `form` 1 the slower v/sqrt(v^2 + v_t^2).
     With a `presliding` length (m) it is the state of bristles that deflect before they slip.
     """
     if shape.get("presliding", 0.0) > 0.0:
@@ -18,6 +19,8 @@ def column(motion: Motion, shape: Shape) -> Array:
     transition = shape.get("transition_speed", 0.0)
     if transition == 0.0:
         return np.sign(motion.velocity)
+    if shape.get("form", 0.0) > 0.0:
+        return motion.velocity / np.hypot(motion.velocity, transition)
     return np.tanh(motion.velocity / transition)
 
 
@@ -29,6 +32,7 @@ TERM = Term(
     parameters=(
         Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
         Parameter("presliding", 1e-5, 0.02, 0.0, "m", "displacement", "log"),
+        Parameter("form", 0.0, 1.0, 0.0, ""),
     ),
     nonnegative=True,
     mistaken_for=("stribeck-friction", "power-law-damping", "hysteresis"),

@@ -1,10 +1,13 @@
 """Effects whose measured curve is not their formula's, and delays made in more than one way."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
 from discover.gap import close_gap
+from discover.records import Campaign
 from tests.discover.gap_data import campaign, device
 
 BASELINE = "fit:inertia,viscous-damping"
@@ -84,3 +87,40 @@ def test_a_delay_closes_however_it_was_made(made):
     assert found.rounds[0].effect == "time-delay"
     assert found.rounds[0].coefficient == pytest.approx(late, rel=0.1)
     assert found.final_held_out_gap_percent < 1.3 * found.noise_percent
+
+
+@pytest.mark.parametrize("lost", [1, 3])
+def test_samples_that_were_lost_after_channels_were_aligned_leave_no_gap(lost):
+    """The spline went through them: without them it would miss the jumps of friction beside."""
+    late = 1.3e-3
+
+    def law(t, x, v, a):
+        return CubicSpline(t, device(t, x, v, a) + 60.0 * np.tanh(v / 1e-4))(t - late)
+
+    whole = campaign(law)
+    records = []
+    for r in whole.records:
+        turns = np.flatnonzero(np.diff(np.sign(np.gradient(r.displacement))))[1::3]
+        kept = np.delete(np.arange(r.time.size), (turns[:, None] + np.arange(lost)).ravel())
+        records.append(replace(
+            r, time=r.time[kept], force=r.force[kept], displacement=r.displacement[kept]
+        ))
+    found = close_gap(Campaign("lost samples", tuple(records)), f"{BASELINE},coulomb-friction")
+    assert found.rounds[0].effect == "time-delay"
+    assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
+
+
+def test_friction_that_reverses_along_another_curve_leaves_no_gap():
+    """tanh is nearly there by its harmonics, and misses the samples around every reversal."""
+
+    def law(t, x, v, a):
+        seal = 90.0 * np.sin(np.arctan(v / 8e-4))
+        return device(t, x, v, a) + seal + 2000.0 * np.abs(v) * v
+
+    found = close_gap(campaign(law), f"{BASELINE},coulomb-friction")
+    (only,) = found.rounds
+    assert only.effect == "quadratic-damping"
+    friction = next(t for t in found.to_dict()["mended"] if t["id"] == "coulomb-friction")
+    assert friction["form"] == 1.0
+    assert friction["transition_speed"] == pytest.approx(8e-4, rel=0.1)
+    assert found.final_held_out_gap_percent < 1.03 * found.noise_percent

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from models.constitutive import FittedTerm, ForceModel
-from models.motion import harmonic_motion, sine_motion
+from models.motion import Motion, harmonic_motion, sine_motion
 from models.terms import TERMS
 
 MOTION = sine_motion(0.01, 3.0, samples=2048)
@@ -170,6 +170,36 @@ def test_a_gain_settles_after_the_record_s_start():
     elapsed = MOTION.time - MOTION.time[0]
     expected = (1.1 - 0.1 * np.exp(-elapsed / 0.2)) * force(*LINEAR)
     np.testing.assert_allclose(found, expected)
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_a_gain_behind_a_filter_is_less_and_late_where_forces_are_fast(order):
+    motion = sine_motion(0.01, 2.0, samples=512)
+    shape = {"filter_time": 0.05, "filter_order": order}
+    damped = FittedTerm("viscous-damping", 300.0)
+    found = force(damped, FittedTerm("sensor-gain", 0.2, shape), motion=motion)
+    part = 0.2 * (1.0 + 2j * np.pi * 2.0 * 0.05) ** -order
+    phase = 2.0 * np.pi * 2.0 * motion.time
+    top = 300.0 * 0.01 * 2.0 * np.pi * 2.0
+    expected = top * np.real((1.0 + part) * np.exp(1j * phase))
+    np.testing.assert_allclose(found, expected, atol=1e-9 * top)
+
+
+def test_a_filter_settles_on_a_ramp_as_its_differential_equation_says():
+    time = np.linspace(0.0, 1.0, 401)
+    rest = np.zeros_like(time)
+    ramp = Motion(time, 0.3 * time, 0.3 + rest, rest, lambda orders: rest, "none")
+    gain = FittedTerm("sensor-gain", 1.0, {"filter_time": 0.07})
+    spring = FittedTerm("stiffness", 10.0)
+    passed = force(spring, gain, motion=ramp) - force(spring, motion=ramp)
+    expected = 3.0 * (time - 0.07 * (1.0 - np.exp(-time / 0.07)))
+    np.testing.assert_allclose(passed, expected, atol=1e-10)
+
+
+def test_friction_reverses_along_another_curve():
+    found = force(FittedTerm("coulomb-friction", 7.0, {"transition_speed": 0.02, "form": 1.0}))
+    v = MOTION.velocity
+    np.testing.assert_allclose(found, 7.0 * np.sin(np.arctan(v / 0.02)))
 
 
 def test_a_zero_that_wanders_is_a_sum_of_powers_of_time():

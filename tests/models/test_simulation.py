@@ -284,6 +284,7 @@ def every_effect() -> ForceModel:
             FittedTerm("coulomb-friction", 0.1),
             FittedTerm("stribeck-friction", 0.05, {"stribeck_velocity": 0.1}),
             FittedTerm("coulomb-friction", 0.04, {"transition_speed": 0.05}),
+            FittedTerm("coulomb-friction", 0.03, {"transition_speed": 0.05, "form": 1.0}),
             FittedTerm("fractional-derivative", 0.2, {"order": 0.6}),
             FittedTerm("fractional-derivative", 0.3, {"order": 1.7}),
         )
@@ -297,6 +298,23 @@ def test_energy_balance_closes() -> None:
     )
     assert abs(response.energy.residual) <= 1e-10
     assert response.energy.input != 0.0
+
+
+@pytest.mark.parametrize("form", [0.0, 1.0])
+def test_friction_over_a_range_of_speed_slows_a_mass_by_its_curve(form: float) -> None:
+    # Speeds from the time that separating the variables gives, in closed form.
+    speed, friction, start = 0.05, 0.04, 0.3
+    shape = {"transition_speed": speed, "form": form}
+    law = ForceModel((FittedTerm("coulomb-friction", friction, shape),))
+    response = simulate(oscillator(1.0, 0.0, law), step=1e-3, duration=6.0, velocity=start)
+    v = response.velocity[:, 0]
+    moving = v > 1e-3
+    u = np.append(start, v[moving])
+    root = np.hypot(u, speed)
+    falls = speed * np.log(u / (speed + root)) if form else speed * np.log(np.sinh(u / speed))
+    curve = root + falls if form else falls
+    expected = (curve[0] - curve[1:]) / friction
+    np.testing.assert_allclose(response.time[moving], expected, atol=2e-3)
 
 
 def test_works_are_those_of_the_motion() -> None:

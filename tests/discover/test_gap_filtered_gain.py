@@ -1,0 +1,55 @@
+"""A gain behind a filter: told from a delay where its corner is in the band, beside it below."""
+
+import numpy as np
+import pytest
+
+from discover.gap import close_gap
+from tests.discover.gap_data import campaign
+
+BASELINE = "fit:inertia,viscous-damping"
+GAIN = 0.2
+
+
+def amplified(time_constant):
+    """The linear device's force and a fifth of it behind a low-pass, by their phasors."""
+
+    def law(t, x, v, a):
+        omega = (np.sum(a**2) / np.sum(x**2)) ** 0.25
+        passed = GAIN / (1.0 + 1j * omega * time_constant)
+        late_a, late_v = omega * v, omega * x  # a quarter of a cycle ago
+        force, quarter = 120.0 * a + 800.0 * v, 120.0 * late_a + 800.0 * late_v
+        return (1.0 + passed.real) * force - passed.imag * quarter
+
+    return law
+
+
+def test_a_gain_that_falls_within_the_band_is_the_sensor_s():
+    found = close_gap(campaign(amplified(0.02)), BASELINE)
+    first = found.rounds[0]
+    assert first.effect == "sensor-gain"
+    assert first.probability > 0.9
+    assert first.parameters["filter_time"] == pytest.approx(0.02, rel=0.5)
+    assert first.coefficient == pytest.approx(GAIN, rel=0.3)
+    assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
+
+
+def test_a_gain_that_falls_above_the_band_may_as_well_be_a_delay():
+    found = close_gap(campaign(amplified(1e-3)), BASELINE)
+    first = found.rounds[0]
+    stated = {first.effect, *(name for name, _ in first.alternatives)}
+    assert stated >= {"sensor-gain", "time-delay"}
+
+
+def test_a_delay_is_no_gain_behind_a_filter():
+    late = 2e-3
+
+    def law(t, x, v, a):
+        omega = (np.sum(a**2) / np.sum(x**2)) ** 0.25
+        angle = omega * late
+        then = omega * x * np.sin(angle) + v * np.cos(angle)
+        return 120.0 * (a * np.cos(angle) + omega * v * np.sin(angle)) + 800.0 * then
+
+    found = close_gap(campaign(law), BASELINE)
+    first = found.rounds[0]
+    assert first.effect == "time-delay"
+    assert first.coefficient == pytest.approx(late, rel=0.05)
