@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import gamma, roots_genlaguerre
 
 from discover.motion_fit import Observation
 from models.checks import Array
@@ -20,8 +19,8 @@ DELAY = "time-delay"
 _BEYOND = 4  # samples beyond a delay, that a spline needs
 _RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant shows on it
 _REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ
-_MOST_LOST = 16  # samples in a row
-_NODES = 6  # earlier moments of which a filtered force is summed
+_MOST_MISSING = 16  # samples in a row
+_EARLIER = np.polynomial.laguerre.laggauss(6)  # moments in time constants, and their weights
 
 
 def needs_cycle(term: Term, shape: Shape) -> bool:
@@ -137,7 +136,7 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
         rest = ForceModel(tuple(t for t in model.terms if t not in filtered))
         force = model_force(observation, rest)
         for t in filtered:
-            force = force + t.coefficient * _low_passed(observation, rest, t.shape)
+            force = force + t.coefficient * _low_passed(observation, rest, t.shape["filter_time"])
         return force
     delays = [t for t in model.terms if t.id == DELAY]
     if delays and observation.late is not None:
@@ -156,20 +155,20 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
     return plain.force(motion) + _from_cycle(observation, change)
 
 
-def _low_passed(observation: Observation, model: ForceModel, shape: Shape) -> Array:
-    """Return the force behind a gain's low-pass, at a sine test's samples.
+def _low_passed(observation: Observation, model: ForceModel, time_constant: float) -> Array:
+    """Return the force behind a low-pass of first order, at a sine test's samples.
 
     The cycle's grid shows it where it is fine enough. Otherwise the force of earlier moments is
-    summed with the filter's impulse response as weights, by Gauss's rule for them.
+    summed with exponential weights, by Gauss's rule for them.
     """
-    cycle, time_constant = observation.cycle, shape["filter_time"]
+    cycle = observation.cycle
     if cycle is not None and time_constant > _RESOLVED * cycle.step:
         force = steady_part(model).force(cycle)
-        return _from_cycle(observation, low_passed_cycle(force, cycle.step, shape))
+        return _from_cycle(observation, low_passed_cycle(force, cycle.step, time_constant))
     result = np.zeros_like(observation.motion.displacement)
-    for ago, weight in zip(*roots_genlaguerre(_NODES, shape["filter_order"] - 1.0), strict=True):
+    for ago, weight in zip(*_EARLIER, strict=True):
         earlier = _shifted(observation, ago * time_constant)
-        result += weight / gamma(shape["filter_order"]) * model_force(earlier, model)
+        result += weight * model_force(earlier, model)
     return result
 
 
@@ -188,7 +187,7 @@ def _aligned(
     own = observation.motion.time
     if observation.late is None:
         return between_samples(model_force(observation, model), own, delay, degree)
-    time, force = _with_lost_samples(observation, model)
+    time, force = _with_missing_samples(observation, model)
     step = float(np.median(np.diff(own)))
     count = min(int(abs(delay) / step) + _BEYOND, own.size)
     first, last = (slice(0, 0), slice(-count, None)) if delay < 0.0 else (slice(count), slice(0, 0))
@@ -202,19 +201,22 @@ def _aligned(
     return found[np.searchsorted(whole, own)]
 
 
-def _with_lost_samples(observation: Observation, model: ForceModel) -> tuple[Array, Array]:
-    """Return times and the force at them, with those that a record lost of regular samples."""
+def _with_missing_samples(observation: Observation, model: ForceModel) -> tuple[Array, Array]:
+    """Return times and the force at them, with those that are missing of regular samples.
+
+    A record may have lost some, and a sine test's fit leaves out those at its reversals.
+    """
     time, force = observation.motion.time, model_force(observation, model)
     spacing = np.diff(time)
     step = float(np.median(spacing))
-    lost = np.round(spacing / step).astype(int) - 1
-    regular = np.abs(spacing - (lost + 1) * step) < _REGULAR * step
-    most = int(lost.max(initial=0))
-    if not 0 < most <= _MOST_LOST or not regular.all():
+    missing = np.round(spacing / step).astype(int) - 1
+    regular = np.abs(spacing - (missing + 1) * step) < _REGULAR * step
+    most = int(missing.max(initial=0))
+    if not 0 < most <= _MOST_MISSING or not regular.all():
         return time, force
     times, forces = [time], [force]
     for ahead in range(1, most + 1):
-        at = np.flatnonzero(lost >= ahead)
+        at = np.flatnonzero(missing >= ahead)
         times.append(time[at] + ahead * step)
         forces.append(model_force(_shifted(observation, -ahead * step), model)[at])
     whole, values = np.concatenate(times), np.concatenate(forces)

@@ -17,9 +17,8 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
 
     The range reaches from a peak force of `threshold` (N) upwards, or up to it where `side` is
     negative. With `one_way` 1 the gain is that of tension (`side` 1) or compression (-1) only.
-    With `filter_time` T (s) above 0 the part g passes a low-pass: slow forces read 1 + g times
-    themselves, fast ones less of g, and late. It is `filter_order` filters of first order with that
-    time constant after each other.
+    With `filter_time` T (s) above 0 the part g passes a low-pass of first order with that time
+    constant: slow forces read 1 + g times themselves, fast ones less of g, and late.
     A gain that is there from a campaign's test number `from_test` on, and grows for `over` tests
     until it is whole, can't be told from the motion: who knows the test scales it. With
     `settling_time` T (s) above 0 it is 1 - exp(-t/T) of itself, t from the record's start.
@@ -30,7 +29,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         settled = -np.expm1(-elapsed / shape["settling_time"])
         return np.asarray(force * (1.0 + coefficient * settled))
     if shape["filter_time"] > 0.0:
-        return force + coefficient * _low_passed(force, motion, shape)
+        return force + coefficient * _low_passed(force, motion, shape["filter_time"])
     if shape["one_way"] > 0.0:
         return np.where(shape["side"] * force > 0.0, 1.0 + coefficient, 1.0) * force
     peak = float(np.abs(force).max())
@@ -38,23 +37,25 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     return force * (1.0 + coefficient) if inside else force
 
 
-def _low_passed(force: Array, motion: Motion, shape: Shape) -> Array:
+def _low_passed(force: Array, motion: Motion, time_constant: float) -> Array:
     """Return a force behind the low-pass: steady, or settled as the record begins."""
     if motion.periodic:
-        return low_passed_cycle(force, motion.step, shape)
-    steps = motion.step / shape["filter_time"]
+        return low_passed_cycle(force, motion.step, time_constant)
+    steps = motion.step / time_constant
     kept, mean = float(np.exp(-steps)), float(-np.expm1(-steps) / steps)
-    passed = force - force[0]
-    for _ in range(round(shape["filter_order"])):  # exact for lines between samples
-        passed = lfilter([1.0 - mean, mean - kept], [1.0, -kept], passed)
+    # exact for lines between samples
+    passed = lfilter([1.0 - mean, mean - kept], [1.0, -kept], force - force[0])
     return np.asarray(force[0] + passed)
 
 
-def low_passed_cycle(force: Array, step: float, shape: Shape) -> Array:
-    """Return a cycle (N,) of a force in N, sampled every `step` s, behind the low-pass."""
+def low_passed_cycle(force: Array, step: float, time_constant: float) -> Array:
+    """Return a cycle (N,) of a force in N, sampled every `step` s, behind a first-order low-pass.
+
+    `time_constant` is its own, s.
+    """
     omega = 2.0 * np.pi * np.fft.rfftfreq(force.size, step)
-    response = (1.0 + 1j * omega * shape["filter_time"]) ** -shape["filter_order"]
-    return np.fft.irfft(np.fft.rfft(force) * response, n=force.size)
+    lines = np.fft.rfft(force) / (1.0 + 1j * omega * time_constant)
+    return np.fft.irfft(lines, n=force.size)
 
 
 TERM = Term(
@@ -71,7 +72,6 @@ TERM = Term(
         Parameter("over", 0.0, 1e6, 0.0, ""),
         Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),
         Parameter("filter_time", 1e-6, 10.0, 0.0, "s", "", "log"),
-        Parameter("filter_order", 1.0, 8.0, 1.0, ""),
     ),
     mistaken_for=("inertia", "viscous-damping"),
 )
