@@ -23,13 +23,15 @@ def amplified(time_constant):
     return law
 
 
-def test_a_gain_that_falls_within_the_band_is_the_sensor_s():
-    found = close_gap(campaign(amplified(0.02)), BASELINE)
+@pytest.mark.parametrize(("time_constant", "accuracy"), [(0.02, 0.03), (0.005, 0.25)])
+def test_a_gain_that_falls_within_the_band_is_the_sensor_s(time_constant, accuracy):
+    found = close_gap(campaign(amplified(time_constant)), BASELINE)
     first = found.rounds[0]
     assert first.effect == "sensor-gain"
     assert first.probability > 0.9
-    assert first.parameters["filter_time"] == pytest.approx(0.02, rel=0.5)
-    assert first.coefficient == pytest.approx(GAIN, rel=0.3)
+    assert first.parameters["filter_time"] == pytest.approx(time_constant, rel=accuracy)
+    assert first.interval[0] < GAIN < first.interval[1]
+    assert first.coefficient == pytest.approx(GAIN, rel=accuracy)
     assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
 
 
