@@ -36,29 +36,19 @@ def mended(
     begun: ModelFit | None,
 ) -> ModelFit:
     """Return the fit with an effect added, from where the contest's own refinement stopped."""
-    found = _added(rows, fit, contest, name, begun)
-    return found if has_joint(found.model) else _reversing(rows, found)
-
-
-def _added(
-    rows: Sequence[RecordRows],
-    fit: ModelFit,
-    contest: Contest,
-    name: str,
-    begun: ModelFit | None,
-) -> ModelFit:
     entry = next(e for e in contest.entries if e.effects and e.effects[0] == name)
     model = extended(fit.model, entry) if begun is None else begun.model
     found = fit_model(rows, model, free_parameters(model))
     if of_each_test(found.model, name):
         found = _shared(rows, fit, contest.starts[name], found)
     if name == "time-delay" and not of_each_test(found.model, name):
-        return _aligned(rows, found)
-    if name == "sensor-gain":
-        return best_range(rows, found)
-    if is_joint(name):
-        found = restarted(rows, found)
-    return polished(rows, found) if has_joint(found.model) else found
+        found = _aligned(rows, found)
+    elif name == "sensor-gain":
+        found = best_range(rows, found)
+    else:
+        found = restarted(rows, found) if is_joint(name) else found
+        found = polished(rows, found) if has_joint(found.model) else found
+    return found if has_joint(found.model) else _reversing(rows, found)
 
 
 def _shared(
@@ -104,7 +94,7 @@ def _reversing(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
         return fit
     terms = list(fit.model.terms)
     friction = terms[place]
-    form, speed = friction.shape.get("form", 0.0), friction.shape["transition_speed"]
+    form, speed = friction.shape["form"], friction.shape["transition_speed"]
     as_wide = speed / _AREA if form else speed * _AREA
     other = {**friction.shape, "form": 1.0 - form, "transition_speed": as_wide}
     terms[place] = FittedTerm(friction.id, friction.coefficient, other)
