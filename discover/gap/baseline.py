@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.gap.fractional import FOIM_TERMS, FRACTIONAL, fitted_sfoim
+from discover.gap.reversing import reversing_as_sampled
 from discover.motion_fit import Observation
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.rows import RecordRows, record_rows
@@ -102,7 +103,7 @@ def fit_terms(rows: Sequence[RecordRows], ids: Sequence[str]) -> ModelFit:
             best = found
     if best is None:
         raise InputError("terms", expected="at least one", found="none")
-    return fit_model(rows, best.model, free_parameters(best.model))
+    return reversing_as_sampled(rows, fit_model(rows, best.model, free_parameters(best.model)))
 
 
 def prepare_baseline(

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from discover.gap.accuracy import pooled
+from discover.gap.reversing import reversing_as_sampled
 from discover.gap.stages import left_out, record_misfit, without
 from discover.naming.contest import Contest
 from discover.naming.evidence import Entry
-from discover.naming.fit import ModelFit, Parameter, fit_model, free_parameters
+from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.forces import has_joint, is_joint, of_each_test
 from discover.naming.refine import extended
 from discover.naming.restart import best_range, polished, restarted
-from discover.naming.reversal import reversing_friction
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
-_CLEARER = 0.99  # of a gap, below which another kind of delay or of reversal is preferred
-_AREA = float(np.log(2.0))  # between sign and tanh, of that between sign and v/sqrt(v^2 + v_t^2)
-_ANOTHER_WIDTH = 1.5  # times the range of reversal: then it stands for something else
+_CLEARER = 0.99  # of a gap, below which another kind of delay is preferred
 _LAWS = 3  # of an effect, that are fitted instead of values of every test's own
 _MOSTLY = 0.95  # of what these explain, that such a law has to
 _AS_WELL = 1.1  # times the gap that these leave, up to which such a law is preferred
@@ -48,7 +44,7 @@ def mended(
     else:
         found = restarted(rows, found) if is_joint(name) else found
         found = polished(rows, found) if has_joint(found.model) else found
-    return found if has_joint(found.model) else _reversing(rows, found)
+    return found if has_joint(found.model) else reversing_as_sampled(rows, found)
 
 
 def _shared(
@@ -85,28 +81,6 @@ def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
         if now < gap:
             best, gap = trial, now
     return best
-
-
-def _reversing(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
-    """Return the fit with the curve along which friction reverses as the samples tell."""
-    place = reversing_friction(fit.model)
-    if place is None or Parameter(place, "transition_speed") not in fit.parameters:
-        return fit
-    terms = list(fit.model.terms)
-    friction = terms[place]
-    form, speed = friction.shape["form"], friction.shape["transition_speed"]
-    as_wide = speed / _AREA if form else speed * _AREA
-    other = {**friction.shape, "form": 1.0 - form, "transition_speed": as_wide}
-    terms[place] = FittedTerm(friction.id, friction.coefficient, other)
-    model = ForceModel(tuple(terms), fit.model.name)
-    trial = fit_model(rows, model, free_parameters(model))
-    now, before = (
-        sum(m.error / max(m.force, 1e-300) for m in (record_misfit(r, f.model) for r in rows))
-        for f in (trial, fit)
-    )
-    width = trial.model.terms[place].shape["transition_speed"] / as_wide
-    same = 1.0 / _ANOTHER_WIDTH < width < _ANOTHER_WIDTH
-    return trial if same and now < _CLEARER * before else fit
 
 
 def without_superfluous(
