@@ -8,6 +8,7 @@ from scipy.interpolate import CubicSpline
 
 from discover.gap import close_gap
 from discover.records import Campaign
+from models.constitutive import FittedTerm, ForceModel
 from tests.discover.gap_data import campaign, device
 
 BASELINE = "fit:inertia,viscous-damping"
@@ -110,14 +111,27 @@ def test_samples_that_were_lost_after_channels_were_aligned_leave_no_gap(lost):
     assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
 
 
-def test_friction_that_reverses_along_another_curve_leaves_no_gap():
+def sealed(t, x, v, a):
     """tanh is nearly there by its harmonics, and misses the samples around every reversal."""
+    return device(t, x, v, a) + 90.0 * np.sin(np.arctan(v / 8e-4))
 
+
+def test_friction_that_reverses_along_another_curve_is_none_that_is_missing():
+    found = close_gap(campaign(sealed), f"{BASELINE},coulomb-friction")
+    assert found.verdict == "agrees"
+    assert found.rounds == ()
+    for r in found.records:
+        assert r.before < 1.1 * r.noise
+
+
+@pytest.mark.parametrize("form", [0.0, 1.0])
+def test_a_round_takes_the_curve_that_a_given_model_lacks(form):
     def law(t, x, v, a):
-        seal = 90.0 * np.sin(np.arctan(v / 8e-4))
-        return device(t, x, v, a) + seal + 2000.0 * np.abs(v) * v
+        return sealed(t, x, v, a) + 2000.0 * np.abs(v) * v
 
-    found = close_gap(campaign(law), f"{BASELINE},coulomb-friction")
+    friction = FittedTerm("coulomb-friction", 80.0, {"transition_speed": 1e-3, "form": form})
+    plain = FittedTerm("inertia", 110.0), FittedTerm("viscous-damping", 700.0)
+    found = close_gap(campaign(law), ForceModel((*plain, friction)))
     (only,) = found.rounds
     assert only.effect == "quadratic-damping"
     friction = next(t for t in found.to_dict()["mended"] if t["id"] == "coulomb-friction")
