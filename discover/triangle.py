@@ -183,8 +183,8 @@ def rows_of(
     it can't be, the force's lines are advanced.
     """
     motion = observation.motion
-    if delay and observation.late is not None:
-        motion, delay = observation.late(delay), 0.0
+    if delay and observation.at is not None:
+        motion, delay = observation.at(observation.time - delay), 0.0
     columns = dictionary.evaluate(motion)
     sine = observation.kind == "sine"
     return [

@@ -168,7 +168,7 @@ def observe_sine(
         kind="sine",
         motion=motion,
         cycle=harmonic_motion(displacement, frequency, samples=GRID),
-        late=lambda delay: _motion_at(time - delay, frequency, displacement),
+        at=lambda moments: _motion_at(moments, frequency, displacement),
         windows=(window,),
         time=time,
         measured=force,

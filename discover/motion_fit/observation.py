@@ -91,9 +91,9 @@ class Observation:
     """N/s: straight trend of the force that the lines exclude."""
     cycle: Motion | None = None
     """One cycle of a sine test on a dense grid, for steady-state simulation; None otherwise."""
-    late: Callable[[float], Motion] | None = None
-    """The motion some seconds earlier, which a late force channel belongs to; None where only
-    the force's lines can be shifted."""
+    at: Callable[[Array], Motion] | None = None
+    """The motion of a sine test at other times (M,), s; None where only the force's lines can be
+    shifted."""
     noise: NoiseSpectrum | None = None
     """Of the force in a sine test that was sampled uniformly."""
     test: int = 0

@@ -125,28 +125,32 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
 
     What has memory is evaluated over one steady cycle of a sine test; the rest at the samples.
     """
-    model = of_test(observation, model)
+    return _force(observation, of_test(observation, model))
+
+
+def _force(observation: Observation, model: ForceModel) -> Array:
+    """Return the force of a model with as much of each term as there is in the test."""
     gains = [t for t in model.terms if t.term.acts == "output" and in_record(t.term, t.shape)]
     if gains:
         rest = ForceModel(tuple(t for t in model.terms if t not in gains))
-        force = model_force(observation, rest)
+        force = _force(observation, rest)
         return ForceModel(tuple(gains)).changed(lambda _: force, observation.motion)
     filtered = [t for t in model.terms if behind_filter(t.shape)]
-    if filtered and observation.late is not None:
+    if filtered and observation.at is not None:
         rest = ForceModel(tuple(t for t in model.terms if t not in filtered))
-        force = model_force(observation, rest)
+        force = _force(observation, rest)
         for t in filtered:
             force = force + t.coefficient * _low_passed(observation, rest, t.shape["filter_time"])
         return force
     delays = [t for t in model.terms if t.id == DELAY]
-    if delays and observation.late is not None:
+    if delays and observation.at is not None:
         rest = ForceModel(tuple(t for t in model.terms if t.id != DELAY))
         step = observation.motion.step
         delay = sum(delay_at(step, t.coefficient, t.shape) for t in delays)
         degree = int(max(t.shape.get("resampled", 0.0) for t in delays))
         if degree:
             return _aligned(observation, rest, delay, degree)
-        return model_force(_shifted(observation, delay), rest)
+        return _force(_at(observation, observation.motion.time - delay), rest)
     motion, cycle = observation.motion, observation.cycle
     if cycle is None or not any(needs_cycle(t.term, t.shape) for t in model.terms):
         return model.force(motion)
@@ -155,29 +159,29 @@ def model_force(observation: Observation, model: ForceModel) -> Array:
     return plain.force(motion) + _from_cycle(observation, change)
 
 
+def _at(observation: Observation, time: Array) -> Observation:
+    """Return a sine test at other times."""
+    if observation.at is None:
+        raise ValueError("only a sine test's motion is known at other times")
+    return replace(observation, motion=observation.at(time))
+
+
 def _low_passed(observation: Observation, model: ForceModel, time_constant: float) -> Array:
     """Return the force behind a low-pass of first order, at a sine test's samples.
 
     The cycle's grid shows it where it is fine enough. Otherwise the force of earlier moments is
     summed with exponential weights, by Gauss's rule for them.
     """
-    cycle = observation.cycle
+    cycle, time = observation.cycle, observation.motion.time
     if cycle is not None and time_constant > _RESOLVED * cycle.step:
         force = steady_part(model).force(cycle)
         return _from_cycle(observation, low_passed_cycle(force, cycle.step, time_constant))
-    result = np.zeros_like(observation.motion.displacement)
-    for ago, weight in zip(*_EARLIER, strict=True):
-        earlier = _shifted(observation, ago * time_constant)
-        result += weight * model_force(earlier, model)
-    return result
-
-
-def _shifted(observation: Observation, delay: float) -> Observation:
-    """Return a sine test whose samples are taken some seconds earlier in its motion."""
-    late = observation.late
-    if late is None:
-        raise ValueError("only a sine test's motion is known at other moments")
-    return replace(observation, motion=late(delay), late=lambda more: late(delay + more))
+    ago, weights = _EARLIER
+    moments = time - time_constant * ago[:, None]
+    if any(t.id == DELAY for t in model.terms):  # by samples that follow each other
+        return np.asarray(weights @ [_force(_at(observation, at), model) for at in moments])
+    forces = _force(_at(observation, moments.ravel()), model)
+    return np.asarray(weights @ forces.reshape(moments.shape))
 
 
 def _aligned(
@@ -185,43 +189,27 @@ def _aligned(
 ) -> Array:
     """Return the force as shifted by a spline through samples, some of them beyond the record."""
     own = observation.motion.time
-    if observation.late is None:
-        return between_samples(model_force(observation, model), own, delay, degree)
-    time, force = _with_missing_samples(observation, model)
     step = float(np.median(np.diff(own)))
-    count = min(int(abs(delay) / step) + _BEYOND, own.size)
-    first, last = (slice(0, 0), slice(-count, None)) if delay < 0.0 else (slice(count), slice(0, 0))
-    before = own[first] - (own[count - 1] - own[0] + step)
-    after = own[last] + (own[-1] - own[-count] + step)
-    away = (after[0] - own[-count]) if delay < 0.0 else (before[0] - own[0])
-    other = model_force(_shifted(observation, -float(away)), model)
-    force = np.concatenate([other[first], force, other[last]])
-    whole = np.concatenate([before, time, after])
-    found = between_samples(force, whole, delay, degree)
-    return found[np.searchsorted(whole, own)]
+    beyond = step * np.arange(1, min(int(abs(delay) / step) + _BEYOND, own.size) + 1)
+    before, after = (own[:0], own[-1] + beyond) if delay < 0.0 else (own[0] - beyond[::-1], own[:0])
+    whole = np.concatenate([before, _with_missing(own, step), after])
+    force = _force(_at(observation, whole), model)
+    return between_samples(force, whole, delay, degree)[np.searchsorted(whole, own)]
 
 
-def _with_missing_samples(observation: Observation, model: ForceModel) -> tuple[Array, Array]:
-    """Return times and the force at them, with those that are missing of regular samples.
+def _with_missing(time: Array, step: float) -> Array:
+    """Return the times of regular samples with those that are missing.
 
     A record may have lost some, and a sine test's fit leaves out those at its reversals.
     """
-    time, force = observation.motion.time, model_force(observation, model)
     spacing = np.diff(time)
-    step = float(np.median(spacing))
     missing = np.round(spacing / step).astype(int) - 1
     regular = np.abs(spacing - (missing + 1) * step) < _REGULAR * step
-    most = int(missing.max(initial=0))
-    if not 0 < most <= _MOST_MISSING or not regular.all():
-        return time, force
-    times, forces = [time], [force]
-    for ahead in range(1, most + 1):
-        at = np.flatnonzero(missing >= ahead)
-        times.append(time[at] + ahead * step)
-        forces.append(model_force(_shifted(observation, -ahead * step), model)[at])
-    whole, values = np.concatenate(times), np.concatenate(forces)
-    order = np.argsort(whole)
-    return whole[order], values[order]
+    if not 0 < missing.max(initial=0) <= _MOST_MISSING or not regular.all():
+        return time
+    behind = np.repeat(time, np.append(missing, 0))  # of each missing one the last that is there
+    ahead = np.arange(behind.size) - np.searchsorted(behind, behind) + 1
+    return np.sort(np.concatenate([time, behind + ahead * step]))
 
 
 def steady_part(model: ForceModel) -> ForceModel:
@@ -298,8 +286,8 @@ class Trial:
         """
         share = share_in(self.observation, shape)
         shifts = term.id == DELAY or behind_filter(shape)
-        if share > 0.0 and shifts and self.observation.late is not None:
-            late = ForceModel((*self.model.terms, FittedTerm(term.id, share * probe, shape)))
+        if share > 0.0 and shifts and self.observation.at is not None:
+            late = ForceModel((*self.model.terms, FittedTerm(term.id, probe, shape)))
             return (model_force(self.observation, late) - self._late_from) / probe
         cycle = self.observation.cycle if self.on_cycle(term, shape) else None
         motion = self.observation.motion if cycle is None else cycle

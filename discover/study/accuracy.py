@@ -75,8 +75,8 @@ def compare(observation: Observation, force: Array) -> Accuracy:
 def predict(observation: Observation, model: ForceModel, delay: float = 0.0) -> Accuracy:
     """Return the model's force for the record's motion, as late as its force channel is."""
     terms = model.terms
-    if delay and observation.late is not None:
-        return compare(observation, model.force(observation.late(delay)))
+    if delay and observation.at is not None:
+        return compare(observation, model.force(observation.at(observation.time - delay)))
     if delay:
         terms = (*terms, FittedTerm("time-delay", delay))
     return compare(observation, ForceModel(terms).force(observation.motion))

@@ -118,7 +118,7 @@ def test_derivatives_of_any_order_follow_the_harmonic_rule():
 def test_an_earlier_motion_is_the_one_of_earlier_samples():
     observed = seen(sine_record(np.sin))
     angle = 2.0 * np.pi * 1.3 * (observed.time - 2e-3) + 0.4
-    earlier = observed.late(2e-3).displacement
+    earlier = observed.at(observed.time - 2e-3).displacement
     np.testing.assert_allclose(earlier, AMPLITUDE * np.sin(angle), atol=1e-12)
 
 
