@@ -49,6 +49,16 @@ def test_a_gain_is_there_from_its_test_on():
     assert of_test(alone, model) is model
 
 
+def test_a_gain_that_grows_from_test_to_test_counts_once_where_the_channel_is_late():
+    growing = FittedTerm("sensor-gain", 0.2, {"from_test": 2.0, "over": 4.0})
+    late = FittedTerm("time-delay", 2e-3)
+    for o in observe_all(campaign(device, noise=0.0).records, 1):
+        gain = 1.0 + 0.2 * min((o.test - 1) / 4.0, 1.0)
+        plain = model_force(o, ForceModel((*MODEL.terms, late)))
+        found = model_force(o, ForceModel((*MODEL.terms, growing, late)))
+        np.testing.assert_allclose(found, gain * plain, atol=1e-5 * np.abs(plain).max())
+
+
 def test_a_gain_that_changed_between_two_tests_is_named_with_the_test():
     plain = campaign(device, seed=4)
     records = tuple(
