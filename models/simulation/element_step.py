@@ -25,7 +25,22 @@ from models.simulation.elements import (
 )
 
 _ITERATIONS = 80
+_LINEAR = 1e-6  # of a transition speed, below which friction over it is a straight line
 _JIT = {"cache": True, "error_model": "numpy", "inline": "always"}
+
+
+@njit(**_JIT)
+def knee_share(u, knee):  # type: ignore[no-untyped-def] # noqa: ANN001, ANN201
+    """Return the share of friction at u transition speeds, and its slope, by their sharpness."""
+    if u < _LINEAR:
+        return u, 1.0
+    if knee > 0.0:
+        th = np.tanh(u**knee)
+        return th ** (1.0 / knee), (1.0 - th * th) * (u / th ** (1.0 / knee)) ** (knee - 1.0)
+    power = -2.0 * knee
+    less, more = min(u, 1.0), max(u, 1.0)
+    share = less * (less**power + more**-power) ** (-1.0 / power)
+    return share, (share / u) ** (power + 1.0)
 
 
 @njit(**_JIT)
@@ -34,10 +49,10 @@ def curved_force(v, curves, start, stop):  # type: ignore[no-untyped-def] # noqa
     force, slope = 0.0, 0.0
     for i in range(start, stop):
         code, c, p = curves[i, 0], curves[i, 1], curves[i, 2]
-        if code == SMOOTH_FRICTION and curves[i, 3] > 0.0:
-            root = np.hypot(v, p)
-            force += c * v / root
-            slope += c * p * p / root**3
+        if code == SMOOTH_FRICTION and curves[i, 3] != 1.0:
+            share, rise = knee_share(abs(v) / p, curves[i, 3])
+            force += c * share * np.sign(v)
+            slope += c * rise / p
         elif code == SMOOTH_FRICTION:
             th = np.tanh(v / p)
             force += c * th

@@ -162,8 +162,9 @@ def _place(
                 curves.append((END_STOP, value, side * shape["gap"], shape["exponent"]))
     elif fitted.id == "coulomb-friction":
         if shape["transition_speed"] > 0.0:
-            form = shape.get("form", 0.0)
-            curves.append((SMOOTH_FRICTION, value, shape["transition_speed"], form))
+            sharpness = shape["sharpness"] or 1.0
+            knee = -sharpness if shape["form"] > 0.0 else sharpness  # its sign says which curve
+            curves.append((SMOOTH_FRICTION, value, shape["transition_speed"], knee))
         else:
             row[FRICTION] += value
     elif fitted.id == "stribeck-friction":

@@ -11,7 +11,9 @@ from models.terms.term import Parameter, Shape, Term
 def column(motion: Motion, shape: Shape) -> Array:
     """Return sign v, or where the transition speed v_t is not zero a curve that reverses over it.
 
-    That is tanh(v/v_t), or with `form` 1 the slower v/sqrt(v^2 + v_t^2).
+    That is tanh(v/v_t), or with `form` 1 the slower v/sqrt(v^2 + v_t^2). A `sharpness` m other than
+    0 changes its knee: tanh(u^m)^(1/m) and u/(1 + u^2m)^(1/2m) of u = |v|/v_t, with the sign of v;
+    they are the plain curves for m = 1, and a straight line up to a limit for a large one.
     With a `presliding` length (m) it is the state of bristles that deflect before they slip.
     """
     if shape.get("presliding", 0.0) > 0.0:
@@ -19,9 +21,21 @@ def column(motion: Motion, shape: Shape) -> Array:
     transition = shape.get("transition_speed", 0.0)
     if transition == 0.0:
         return np.sign(motion.velocity)
-    if shape.get("form", 0.0) > 0.0:
-        return motion.velocity / np.hypot(motion.velocity, transition)
-    return np.tanh(motion.velocity / transition)
+    return _reversing(motion.velocity / transition, shape)
+
+
+def _reversing(speed: Array, shape: Shape) -> Array:
+    """Return the curve over the speed in transition speeds."""
+    slow, sharpness = shape.get("form", 0.0) > 0.0, shape.get("sharpness", 0.0)
+    if sharpness == 0.0:
+        return speed / np.hypot(speed, 1.0) if slow else np.tanh(speed)
+    size = np.abs(speed)
+    if not slow:
+        return np.sign(speed) * np.tanh(size**sharpness) ** (1.0 / sharpness)
+    less, more = np.minimum(size, 1.0), np.maximum(size, 1.0)  # neither power overflows
+    power = 2.0 * sharpness
+    knee = (less**power + more**-power) ** (-1.0 / power)
+    return np.sign(speed) * less * knee
 
 
 TERM = Term(
@@ -33,6 +47,7 @@ TERM = Term(
         Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
         Parameter("presliding", 1e-5, 0.02, 0.0, "m", "displacement", "log"),
         Parameter("form", 0.0, 1.0, 0.0, ""),
+        Parameter("sharpness", 0.5, 20.0, 0.0, "", "", "log"),
     ),
     nonnegative=True,
     mistaken_for=("stribeck-friction", "power-law-damping", "hysteresis"),

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
+from scipy.special import erf
 
 from discover.gap import close_gap
 from discover.records import Campaign
@@ -122,6 +123,30 @@ def test_friction_that_reverses_along_another_curve_is_none_that_is_missing():
     assert found.rounds == ()
     for r in found.records:
         assert r.before < 1.1 * r.noise
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [erf, lambda u: 2.0 / np.pi * np.arctan(0.5 * np.pi * u), lambda u: np.clip(u, -1.0, 1.0)],
+    ids=["error function", "arc tangent", "line up to a limit"],
+)
+def test_friction_of_another_knee_is_no_missing_effect(curve):
+    """With tanh or its slower sister alone the first two were named Stribeck friction."""
+    found = close_gap(
+        campaign(lambda t, x, v, a: device(t, x, v, a) + 90.0 * curve(v / 3e-3)),
+        f"{BASELINE},coulomb-friction",
+    )
+    assert found.verdict == "agrees"
+    assert all(r.before < 1.1 * r.noise for r in found.records)
+
+
+@pytest.mark.parametrize("curve", [erf, np.tanh])
+def test_a_knee_does_not_stand_for_a_fall_of_friction(curve):
+    def law(t, x, v, a):
+        return device(t, x, v, a) + (60.0 + 30.0 * np.exp(-np.abs(v) / 0.02)) * curve(v / 1e-3)
+
+    found = close_gap(campaign(law), f"{BASELINE},coulomb-friction")
+    assert found.rounds[0].effect == "stribeck-friction"
 
 
 @pytest.mark.parametrize("form", [0.0, 1.0])

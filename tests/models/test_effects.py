@@ -201,6 +201,18 @@ def test_friction_reverses_along_another_curve():
     np.testing.assert_allclose(found, 7.0 * np.sin(np.arctan(v / 0.02)))
 
 
+@pytest.mark.parametrize("form", [0.0, 1.0])
+def test_a_sharp_knee_is_a_line_up_to_a_limit_and_a_plain_one_is_the_plain_curve(form):
+    shape = {"transition_speed": 0.02, "form": form}
+    plain, same, sharp = (
+        force(FittedTerm("coulomb-friction", 7.0, {**shape, "sharpness": m}))
+        for m in (0.0, 1.0, 20.0)
+    )
+    np.testing.assert_allclose(same, plain, atol=1e-12)
+    line = 7.0 * np.clip(MOTION.velocity / 0.02, -1.0, 1.0)
+    np.testing.assert_allclose(sharp, line, atol=0.05 * 7.0)
+
+
 def test_a_zero_that_wanders_is_a_sum_of_powers_of_time():
     powers = [FittedTerm("sensor-drift", c, {"power": p}) for c, p in ((2.0, 1.0), (-30.0, 3.0))]
     elapsed = MOTION.time - MOTION.time[0]

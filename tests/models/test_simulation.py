@@ -317,6 +317,21 @@ def test_friction_over_a_range_of_speed_slows_a_mass_by_its_curve(form: float) -
     np.testing.assert_allclose(response.time[moving], expected, atol=2e-3)
 
 
+@pytest.mark.parametrize(("form", "sharpness"), [(0.0, 2.5), (0.0, 0.7), (1.0, 0.6), (1.0, 3.0)])
+def test_friction_of_another_knee_slows_a_mass_by_its_curve(form: float, sharpness: float) -> None:
+    def pull(_: float, v: NDArray[np.float64]) -> NDArray[np.float64]:
+        u = np.maximum(v, 0.0) / 0.05  # a step of the solver may end below
+        if form:
+            return -0.04 * u / (1.0 + u ** (2.0 * sharpness)) ** (0.5 / sharpness)
+        return -0.04 * np.tanh(u**sharpness) ** (1.0 / sharpness)
+
+    shape = {"transition_speed": 0.05, "form": form, "sharpness": sharpness}
+    law = ForceModel((FittedTerm("coulomb-friction", 0.04, shape),))
+    response = simulate(oscillator(1.0, 0.0, law), step=1e-3, duration=8.0, velocity=0.3)
+    exact = solve_ivp(pull, (0.0, 8.0), [0.3], t_eval=response.time, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(response.velocity[:, 0], exact.y[0], atol=2e-6)
+
+
 def test_works_are_those_of_the_motion() -> None:
     # Independent of the ledger: quadrature of force times velocity over the samples.
     law = rubbing(FittedTerm("viscous-damping", 0.3), friction=0.1)
