@@ -15,6 +15,7 @@ from discover.naming.fit import ModelFit, Parameter, fit_model, with_values
 from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import ForceModel
+from models.terms.coulomb_friction import column
 
 _CURVES = (0.4, 2.5)
 _OTHER_WIDTHS = (0.03, 0.1, 0.3)
@@ -29,7 +30,7 @@ def reversing_friction(model: ForceModel) -> int | None:
 
 
 def reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
-    """Return rows by which the curve along which friction reverses may differ from tanh."""
+    """Return rows by which the curve along which friction reverses may differ from its own."""
     place = reversing_friction(model)
     if place is None:
         return np.zeros((0, sum(r.target.size for r in rows)))
@@ -38,10 +39,9 @@ def reversal_doubt(rows: Sequence[RecordRows], model: ForceModel) -> Array:
     blocks = []
     for r in rows:
         v = r.observation.motion.velocity
-        smooth, slow = np.tanh(v / speed), v / np.hypot(v, speed)
-        own = slow if friction.shape["form"] else smooth
-        curves = [np.tanh(v / (s * speed)) - own for s in _CURVES]
-        curves.append((smooth if friction.shape["form"] else slow) - own)
+        other = np.tanh(v / speed) if friction.shape["form"] else v / np.hypot(v, speed)
+        own = column(r.observation.motion, friction.shape)
+        curves = [*(np.tanh(v / (s * speed)) - own for s in _CURVES), other - own]
         blocks.append(r.project(friction.coefficient * np.stack(curves)))
     return np.concatenate(blocks, axis=1)
 
