@@ -11,7 +11,7 @@ from discover.naming.contest import Contest
 from discover.naming.evidence import Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.forces import has_joint, is_joint, of_each_test
-from discover.naming.refine import extended
+from discover.naming.refine import at_most_filtered, extended
 from discover.naming.restart import best_range, polished, restarted
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
@@ -97,7 +97,8 @@ def without_superfluous(
     return fit, tuple(dropped)
 
 
-def pulls(model: ForceModel, name: str) -> bool:
-    """Tell whether some part of an effect has a sign that it can't have."""
+def impossible(model: ForceModel, name: str) -> bool:
+    """Tell whether some part of an effect has a sign or a size that it can't have."""
     own = [t for t in model.terms if t.id == name]
-    return any(t.term.nonnegative and t.coefficient <= 0.0 for t in own)
+    pulls = any(t.term.nonnegative and t.coefficient <= 0.0 for t in own)
+    return pulls or at_most_filtered(ForceModel(tuple(own)))

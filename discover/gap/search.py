@@ -10,7 +10,7 @@ import numpy as np
 from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.doubt import Doubt, doubt_of_added, share_of, within_doubt
-from discover.gap.mending import mended, pulls, without_superfluous
+from discover.gap.mending import impossible, mended, without_superfluous
 from discover.gap.stages import Stage, seen_gap, stage
 from discover.naming.ahead import every_joint, pairs_ahead
 from discover.naming.columns import CandidateColumns
@@ -212,7 +212,7 @@ def _tried(
     """Return the round that adds an effect, or what speaks against it."""
     fit = mended(fitted, now.fit, contest, name, begun)
     gained = now.fit.chi2 - fit.chi2
-    if gained < max(_TOO_LITTLE * contest.excess, _FEWEST) or pulls(fit.model, name):
+    if gained < max(_TOO_LITTLE * contest.excess, _FEWEST) or impossible(fit.model, name):
         return _Next(contest.without(name, None if _beyond(rows, now) else AGREES))
     same = with_member(fitted, now.fit, [r.effect for r in left.rounds]) if left.curves else None
     if same is not None and same[1].chi2 < fit.chi2:

@@ -31,7 +31,7 @@ from discover.naming.evidence import (
     usual_left,
 )
 from discover.naming.fit import ModelFit, kind_of, misfits
-from discover.naming.forces import behind_filter, in_record, is_joint
+from discover.naming.forces import MOST_FILTERED, behind_filter, in_record, is_joint
 from discover.naming.pairs import pairs_with, unlikely
 from discover.naming.reversal import other_reversals, reversal_doubt
 from discover.naming.rows import RecordRows
@@ -45,7 +45,6 @@ _LEFT_ALONE = 0.04  # of the misfit: where the best alone leaves more, a pair is
 _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
 _AN_ANSWER = 0.05
-_MOST_FILTERED = 0.5  # of a gain, whose filter would otherwise be any delay
 _UNEVEN = 5
 _TELLING = 4  # records, by which joints are chosen that are tried on all
 _OF_A_KIND = 6  # joints, that are
@@ -266,7 +265,7 @@ def _single(
     solution = np.linalg.lstsq(gram, freed @ target, rcond=1e-10)[0]
     if TERMS[v.effect].nonnegative and np.any(solution <= 0.0):
         return None
-    if behind_filter(v.parts[0].shape) and abs(solution[0]) > _MOST_FILTERED:
+    if behind_filter(v.parts[0].shape) and abs(solution[0]) > MOST_FILTERED:
         return None
     now = chi2 - float(solution @ (freed @ target))
     value = evidence(now, len(v.parts) + v.shapes) - unusual(v.parts[0].shape)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.naming.forces import DELAY, is_joint, share_in
+from discover.naming.forces import DELAY, MOST_FILTERED, behind_filter, is_joint, share_in
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import UnitRows
 from models.checks import Array
@@ -183,9 +183,12 @@ def _bounded(
     result = values.copy()
     sharp = all(t.id != "viscous-damping" for t in model.terms)
     for index, parameter in enumerate(parameters):
-        if parameter.shape is None:
-            continue
         fitted = model.terms[parameter.term]
+        if parameter.shape is None:
+            if behind_filter(fitted.shape):
+                most = max(MOST_FILTERED, abs(fitted.coefficient))  # a given one may be greater
+                result[index] = np.clip(values[index], -most, most)
+            continue
         known = next(p for p in fitted.term.parameters if p.name == parameter.shape)
         old = value_of(model, parameter)
         low, high = (0.6 * old, 1.6 * old)

@@ -16,6 +16,7 @@ from models.terms.sensor_gain import low_passed_cycle
 from models.terms.time_delay import between_samples, delay_at
 
 DELAY = "time-delay"
+MOST_FILTERED = 0.3  # of a gain: with its filter a greater one is any delay, or memory of a flow
 _BEYOND = 4  # samples beyond a delay, that a spline needs
 _RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant shows on it
 _REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ

@@ -10,7 +10,7 @@ import numpy as np
 from discover.naming.contest import Contest, reweighed
 from discover.naming.evidence import AGREES, Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
-from discover.naming.forces import has_joint, is_joint
+from discover.naming.forces import MOST_FILTERED, behind_filter, has_joint, is_joint
 from discover.naming.restart import best_range
 from discover.naming.reversal import with_reversal
 from discover.naming.rows import RecordRows
@@ -89,16 +89,19 @@ def refine(
     frozen = _Frozen.of(rows, fit, units)
     fits: dict[str, ModelFit] = {}
     passed_over: list[str] = []
+    instead: dict[str, Entry] = {}
     for place, entry in enumerate(leading):
         name = entry.effects[0]
         starts = contest.starts[name][: _KINDS[min(place, len(_KINDS) - 1)]]
-        models = [extended(fit.model, start) for start in starts]
-        if len(models) > 1:
-            begun = [_fit(rows, m, units, _FIRST_STEPS, frozen) for m in models]
-            begun.sort(key=_dearness)
-            several = place == 0 and TERMS[name].acts == "force"
-            models = [f.model for f in begun[: _ENDED if several else 1]]
-        found = min((_fit(rows, m, units, _ITERATIONS, frozen) for m in models), key=_dearness)
+        several = place == 0 and TERMS[name].acts == "force"
+        found = _best(rows, fit, starts, several, units, frozen)
+        if at_most_filtered(found.model):
+            starts = [s for s in contest.starts[name] if not _filtered(s)]
+            if not starts:
+                passed_over.append(name)
+                continue
+            instead[name] = starts[0]
+            found = _best(rows, fit, starts[:1], several, units, frozen)
         if not np.isfinite(found.chi2):
             continue
         own = found.model.terms[len(fit.model.terms) :]
@@ -112,9 +115,44 @@ def refine(
         fits[name] = found
     contest = replace(
         contest,
-        entries=tuple(e for e in contest.entries if not set(passed_over) & set(e.effects)),
+        entries=tuple(
+            instead.get(e.effects[0], e) if len(e.effects) == 1 else e
+            for e in contest.entries
+            if not set(passed_over) & set(e.effects)
+        ),
     )
     return reweighed(rows, contest, fit, fits, effects), fits
+
+
+def _best(
+    rows: Sequence[RecordRows],
+    fit: ModelFit,
+    starts: Sequence[Entry],
+    several: bool,
+    units: UnitRows,
+    frozen: _Frozen | None,
+) -> ModelFit:
+    """Return the best of the fits from an effect's starts; `several` of them to their ends."""
+    models = [extended(fit.model, start) for start in starts]
+    if len(models) > 1:
+        begun = [_fit(rows, m, units, _FIRST_STEPS, frozen) for m in models]
+        begun.sort(key=_dearness)
+        models = [f.model for f in begun[: _ENDED if several else 1]]
+    best = min((_fit(rows, m, units, _ITERATIONS, frozen) for m in models), key=_dearness)
+    if behind_filter(best.model.terms[-1].shape):  # whether its size is possible shows at the end
+        best = fit_model(rows, best.model, best.parameters, units=units)
+    return best
+
+
+def at_most_filtered(model: ForceModel) -> bool:
+    """Tell whether a gain behind a filter is as great as it may be: then it is none."""
+    return any(
+        behind_filter(t.shape) and abs(t.coefficient) >= MOST_FILTERED for t in model.terms
+    )
+
+
+def _filtered(start: Entry) -> bool:
+    return behind_filter(start.variants[0].parts[0].shape)
 
 
 def _dearness(fit: ModelFit) -> float:
