@@ -83,7 +83,8 @@ def _truth(hidden: Hidden) -> str:
     effect = hidden.effect
     said = f"{effect.id}:{effect.form}, {hidden.amount:.4g} {effect.unit}".rstrip()
     rest = ", ".join(f"{name} {value:.4g}" for name, value in hidden.values.items())
-    return said + (f" ({rest}; SI)" if rest else "")
+    seals = f", seals that reverse by: {hidden.law}" if hidden.law else ""
+    return said + (f" ({rest}; SI)" if rest else "") + seals
 
 
 def model_records(

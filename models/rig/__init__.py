@@ -1,8 +1,9 @@
 """The virtual test rig: records of a device from the physics of its flow, not from model terms.
 
 It shares no code with the terms that discovery fits: the force comes from friction correlations,
-the exact impedance of oscillating flow, seals that deflect and slide, and oil that yields; `hidden`
-puts further effects in, in forms of their own. Everything follows from a seed.
+the exact impedance of oscillating flow, seals that deflect and slide (or, in the simple physics,
+reverse by a law drawn for the device), and oil that yields; `hidden` puts further effects in, in
+forms of their own. Everything follows from a seed and the device.
 """
 
 from models.rig.campaign import RigRecord, run

@@ -29,7 +29,9 @@ class Hidden:
     amount: float
     """What gives that size, in the effect's unit."""
     values: Values
-    """Its other parameters, SI."""
+    """Its other parameters, SI; of an effect at the seals, `reversal` is their half speed."""
+    law: str = ""
+    """Of an effect at the seals, by which law they reverse."""
 
     def change(self, bench: Bench, force: Array) -> Array:
         """Return the change (M,) of the force (M,) of one record, N."""
@@ -63,7 +65,10 @@ def hide(
     InputError
         Where no amount gives the size (a force can't fall by more than all of it).
     """
-    values = effect.draw(rng, scales)
+    values, law = effect.draw(rng, scales), ""
+    if effect.at_seals:
+        seal = benches[0].law.seal
+        values, law = values | {"reversal": seal.half_speed}, seal.reversal.name
     forces = [bench.force for bench in benches]
     pairs = tuple(zip(benches, forces, strict=True))
     total = math.sqrt(sum(float(np.sum(force[bench.lead :] ** 2)) for bench, force in pairs))
@@ -82,9 +87,9 @@ def hide(
                 expected="an effect that acts in this campaign",
                 found="no change in force",
             )
-        return Hidden(effect, size, size / unit, values)
+        return Hidden(effect, size, size / unit, values, law)
     amount = _search(reached, size, effect.start(scales), name=f"{effect.id}:{effect.form}")
-    return Hidden(effect, size, amount, values)
+    return Hidden(effect, size, amount, values, law)
 
 
 def _search(reached: Callable[[float], float], size: float, start: float, *, name: str) -> float:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from models.checks import Array, number, one_of
 from models.device import Device
 from models.flow import channel_force, channel_impedance, reynolds
 from models.rig.drive import Drive
-from models.rig.seal import Seal, presliding_friction, smooth_friction
+from models.rig.seal import Seal, draw_seal, presliding_friction, smooth_friction
 
 # Entrance (sharp) and exit loss of the channel, and the growth of the entrance's at low Re
 # (W. B. Hooper, Chem. Eng., 24 August 1981, 96-100).
@@ -46,8 +47,8 @@ class RigPhysics:
     """Second harmonic of the actuator's displacement, about."""
     dry_friction: float | None = None
     """Sliding friction, N; None takes the device's, or none where it has no value."""
-    seal_values: Seal = field(default_factory=lambda: Seal(sliding=0.0))
-    """The seals' other properties; their `sliding` is replaced."""
+    seal_values: Seal | None = None
+    """The seals' other properties, their `sliding` replaced; None draws them for the device."""
     bulk_modulus: float = 1.4e9
     """Of the oil, Pa."""
     chamber_length: float = 0.05
@@ -90,13 +91,14 @@ class FlowLaw:
     table: Array
     """(T,) steady drag at speeds from 0 to `top`, N."""
 
-    @property
+    @cached_property
     def seal(self) -> Seal:
         """The seals with the friction that holds for this device."""
         known = self.device.coulomb_friction or 0.0
         given = self.physics.dry_friction
         sliding = 0.0 if self.physics.seal == "none" else known if given is None else given
-        return replace(self.physics.seal_values, sliding=sliding)
+        values = self.physics.seal_values
+        return replace(draw_seal(self.device) if values is None else values, sliding=sliding)
 
     @property
     def oil_stiffness(self) -> float:

@@ -8,7 +8,7 @@ is the force that a load cell sees.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -17,6 +17,8 @@ from models.checks import Array
 from models.flow import wall_modes
 from models.rig.drive import Drive
 from models.rig.physics import FlowLaw
+from models.rig.reversal import tabulate
+from models.rig.seal import Seal
 
 _MODES = 10
 _SETTLE = 0.5
@@ -93,7 +95,8 @@ def transmitted_force(
             law.table,
             law.top,
             law.physics.seal == "dynamic",
-            np.array([getattr(seal, key.name) for key in fields(seal)]),
+            _numbers(seal),
+            tabulate(seal.reversal),
             rates,
             gain,
         )
@@ -127,6 +130,24 @@ def _drag(w: float, table: Array, top: float) -> tuple[float, float]:
     return math.copysign(table[i] + (place - i) * rise, w), rise / step
 
 
+def _numbers(seal: Seal) -> Array:
+    """Return the seal's numbers in the order that `_friction` reads them in."""
+    return np.array(
+        [seal.sliding, seal.breakaway, seal.stribeck_speed, seal.presliding, seal.half_speed]
+    )
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _share(ratio: float, table: Array) -> tuple[float, float]:
+    """Return a reversal's share of the limit at velocity over half speed, and its slope."""
+    speed = abs(ratio)
+    steps = table.size - 1
+    place = steps * speed / (1.0 + speed)
+    i = min(int(place), steps - 1)
+    rise = table[i + 1] - table[i]
+    return math.copysign(table[i] + (place - i) * rise, ratio), rise * steps / (1.0 + speed) ** 2
+
+
 @njit(cache=True)  # type: ignore[untyped-decorator]
 def _friction(
     w: float,
@@ -134,15 +155,17 @@ def _friction(
     z: float,
     dynamic: bool,  # noqa: FBT001 - numba has no keyword-only arguments
     seal: Array,
+    reversal: Array,
 ) -> tuple[float, float, float, float]:
     """Return dry friction after the displacement `way`, its slope to `way`, to w, and the state.
 
-    `seal` holds sliding, breakaway, Stribeck speed, presliding and transition speed; the laws are
-    those of ``models.rig.seal``.
+    `seal` holds sliding, breakaway, Stribeck speed, presliding and half speed, `reversal` the
+    shares of the limit as ``models.rig.reversal`` tabulates them; the laws are those of
+    ``models.rig.seal``.
     """
     if not dynamic:
-        root = math.hypot(w, seal[4])
-        return seal[0] * w / root, 0.0, seal[0] * seal[4] * seal[4] / root**3, z
+        share, rise = _share(w / seal[4], reversal)
+        return seal[0] * share, 0.0, seal[0] * rise / seal[4], z
     limit = 1.0 + (seal[1] - 1.0) * math.exp(-abs(w) / seal[2])
     bound = math.copysign(limit, way)
     left = math.exp(-abs(way) / (seal[3] * limit))
@@ -183,6 +206,7 @@ def _march(
     top: float,
     dynamic: bool,  # noqa: FBT001 - numba has no keyword-only arguments
     seal: Array,
+    reversal: Array,
     rates: Array,
     gain: float,
 ) -> Array:
@@ -202,7 +226,7 @@ def _march(
     filling = -math.expm1(-dt / refill) if refill > 0.0 else 0.0
     u, w, z = position[0], velocity[0], 0.0
     force, _, _ = _element(0.0, 0.0, x, f, d, k)
-    net = force - _drag(w, table, top)[0] - _friction(w, 0.0, z, dynamic, seal)[0]
+    net = force - _drag(w, table, top)[0] - _friction(w, 0.0, z, dynamic, seal, reversal)[0]
     for sweep in range(passes):
         for i in range(size):
             following = (i + 1) % size
@@ -223,7 +247,7 @@ def _march(
                     way = dt * (_THETA * new + (1.0 - _THETA) * w)
                     force, slope, share = _element(y - u - way, dy - new, x, f, d, k)
                     drag, rise = _drag(new, table, top)
-                    dry, by_way, by_speed, z_new = _friction(new, way, z, dynamic, seal)
+                    dry, by_way, by_speed, z_new = _friction(new, way, z, dynamic, seal, reversal)
                     net_new = force - drag - dry - (lag * new - past)
                     error = b * (new - w) - dt * (_THETA * net_new + (1.0 - _THETA) * net)
                     if error > 0.0:
@@ -232,9 +256,10 @@ def _march(
                         low = new
                     grow = (slope + by_way) * dt * _THETA + share + rise + by_speed + lag
                     trial = new - error / (b + dt * _THETA * grow)
-                    if not low < trial < high:
-                        trial = 0.5 * (low + high)
+                    # Before the bracket: an exact root is an end of it, and Newton stays there.
                     done = abs(trial - new) <= 1e-12 + 1e-10 * abs(new)
+                    if not done and not low < trial < high:
+                        trial = 0.5 * (low + high)
                     new = trial
                     if done:
                         break

@@ -6,6 +6,7 @@ import pytest
 
 from discover.cli import main
 from models.device import Device
+from models.rig.seal import draw_seal
 
 SHORT = ["--frequencies", "0.5,2", "--amplitudes", "5"]
 
@@ -90,6 +91,14 @@ def test_a_hidden_effect_changes_the_force_by_its_size_and_is_told(tmp_path, cap
     told = re.search(r"Hidden: stiffness:spring, (\S+) N/m", capsys.readouterr().out)
     assert told[0] in (tmp_path / "hidden" / "campaign.toml").read_text()
     assert float(told[1]) == pytest.approx(1e6 * np.sqrt(change / stroke), rel=0.02)  # kN, mm
+
+
+def test_effects_at_the_seals_say_how_those_reverse(tmp_path, capsys):
+    synth(tmp_path / "hidden", "--noise", "0", "--hide", "stribeck-friction=10%")
+    told = capsys.readouterr().out
+    seal = draw_seal(Device.preset("device-12"))
+    assert f"reversal {seal.half_speed:.4g}" in told
+    assert f"seals that reverse by: {seal.reversal.name}" in told
 
 
 def test_a_folder_with_anything_in_it_is_refused(tmp_path, capsys):

@@ -9,7 +9,7 @@ from numba import njit
 
 from models.checks import Array
 from models.rig.bench import Bench, Scales
-from models.rig.effects.effect import Effect, Values
+from models.rig.effects.effect import Effect, Values, seal_direction
 from models.rig.seal import Seal, presliding_friction
 
 Generator = np.random.Generator
@@ -46,12 +46,12 @@ def _draw_presliding(rng: Generator, scales: Scales) -> dict[str, float]:
 
 def _tustin(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     fall = np.exp(-np.abs(bench.v) / values["stribeck_speed"])
-    return np.asarray(amount * fall * np.tanh(bench.v / values["reversal"]))
+    return np.asarray(amount * fall * seal_direction(bench, values))
 
 
 def _hess_soom(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     fall = 1.0 / (1.0 + (bench.v / values["stribeck_speed"]) ** 2)
-    return np.asarray(amount * fall * np.tanh(bench.v / values["reversal"]))
+    return np.asarray(amount * fall * seal_direction(bench, values))
 
 
 def _lugre(bench: Bench, force: Array, amount: float, values: Values) -> Array:
@@ -71,13 +71,13 @@ def _draw_stribeck(rng: Generator, scales: Scales) -> dict[str, float]:
 def _taper(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # A bore that narrows to one side: the seal's squeeze follows its stiffening rubber.
     squeeze = np.expm1(values["bend"] * bench.x / values["stroke"]) / values["bend"]
-    return np.asarray(amount * squeeze * np.tanh(bench.v / values["reversal"]))
+    return np.asarray(amount * squeeze * seal_direction(bench, values))
 
 
 def _waist(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # A worn bore: tight away from a point near the middle.
     s = (bench.x - values["centre"]) / values["stroke"]
-    return np.asarray(amount * s**2 / (0.5 + s**2) * np.tanh(bench.v / values["reversal"]))
+    return np.asarray(amount * s**2 / (0.5 + s**2) * seal_direction(bench, values))
 
 
 def _draw_bore(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -164,18 +164,20 @@ EFFECTS = (
     Effect(
         "stribeck-friction",
         "tustin",
-        "exp(-|v|/v_s) tanh(v/v_t)",
+        "exp(-|v|/v_s) times the seals' direction",
         _tustin,
         _draw_stribeck,
         unit="N",
+        at_seals=True,
     ),
     Effect(
         "stribeck-friction",
         "hess-soom",
-        "tanh(v/v_t)/(1 + (v/v_s)^2)",
+        "the seals' direction over 1 + (v/v_s)^2",
         _hess_soom,
         _draw_stribeck,
         unit="N",
+        at_seals=True,
     ),
     Effect(
         "stribeck-friction",
@@ -188,18 +190,20 @@ EFFECTS = (
     Effect(
         "position-dependent-friction",
         "taper",
-        "a bore that narrows to one side: (exp(k x/X) - 1)/k tanh(v/v_t)",
+        "a bore that narrows to one side: (exp(k x/X) - 1)/k times the seals' direction",
         _taper,
         _draw_bore,
         unit="N",
+        at_seals=True,
     ),
     Effect(
         "position-dependent-friction",
         "waist",
-        "a bore worn near its middle: s^2/(0.5 + s^2) tanh(v/v_t), s = (x - x0)/X",
+        "a bore worn near its middle: s^2/(0.5 + s^2) times the seals' direction, s = (x - x0)/X",
         _waist,
         _draw_bore,
         unit="N",
+        at_seals=True,
     ),
     Effect(
         "hysteresis",

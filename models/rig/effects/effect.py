@@ -43,3 +43,11 @@ class Effect:
     """First guess of the amount, where it is searched (not linear)."""
     unit: str = ""
     """SI unit of the amount."""
+    at_seals: bool = False
+    """True where the device's own seals rub: they reverse by their law at their half speed, which
+    is parameter `reversal` whatever `draw` gives for it."""
+
+
+def seal_direction(bench: Bench, values: Values) -> Array:
+    """Return the device's seals' friction over its limit (M,), -1 to 1."""
+    return bench.law.seal.reversal.share(bench.v / values["reversal"])

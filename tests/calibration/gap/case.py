@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from discover.records import Campaign, Record
+from models.device import Device
 from models.rig import (
     CATALOGUE,
     FORMS,
@@ -22,7 +23,14 @@ from models.rig import (
     run,
     sine_plan,
 )
-from tests.calibration.gap.second_set import SECOND, second_device, second_noise, second_plan
+from models.rig.seal import Seal, draw_seal
+from tests.calibration.gap.second_set import (
+    SECOND,
+    second_device,
+    second_noise,
+    second_plan,
+    second_seal,
+)
 
 RECORDS = 12
 SETS = ("first", "second")
@@ -102,28 +110,42 @@ def campaign(case: Case, *, clean: bool = False) -> Campaign:
 
 def measure(case: Case, *, day: int = 0) -> tuple[RigRecord, ...]:
     """Return the rig's records of a case; those of the second set without their noise."""
-    rng = np.random.default_rng([_STREAM[case.kind], case.seed])
-    if case.kind == "second":
-        device = second_device(rng)
-        plan = second_plan(device, rng)
-    else:
-        device = random_device(rng)
-        points = list(
-            sine_plan(device, frequencies=_FREQUENCIES, amplitudes=_AMPLITUDES, limits=Limits())
-        )
-        if len(points) > RECORDS:
-            chosen = np.unique(np.linspace(0, len(points) - 1, RECORDS).astype(int))
-            points = [points[i] for i in chosen]
-        plan = Plan(tuple(points))
+    device, plan = _tested(case)
     chain = Chain() if case.kind == "first" else Chain(noise=0.0, hum=0.0)
     return run(
         device,
         plan,
         seed=case.seed + day,
         hidden=case.effects(),
-        physics=RigPhysics.simple(),
+        physics=replace(RigPhysics.simple(), seal_values=_seal(case, device)),
         chain=chain,
     )
+
+
+def seal_of(case: Case) -> Seal:
+    """Return how the seals of a case's device reverse: the same on every day."""
+    return _seal(case, _tested(case)[0])
+
+
+def _seal(case: Case, device: Device) -> Seal:
+    """Return how the seals of a device reverse, by the laws of the case's set."""
+    return draw_seal(device) if case.kind == "first" else second_seal(device)
+
+
+def _tested(case: Case) -> tuple[Device, Plan]:
+    """Return the device and the plan that a case's seed draws."""
+    rng = np.random.default_rng([_STREAM[case.kind], case.seed])
+    if case.kind == "second":
+        device = second_device(rng)
+        return device, second_plan(device, rng)
+    device = random_device(rng)
+    points = list(
+        sine_plan(device, frequencies=_FREQUENCIES, amplitudes=_AMPLITUDES, limits=Limits())
+    )
+    if len(points) > RECORDS:
+        chosen = np.unique(np.linspace(0, len(points) - 1, RECORDS).astype(int))
+        points = [points[i] for i in chosen]
+    return device, Plan(tuple(points))
 
 
 def single_cases(

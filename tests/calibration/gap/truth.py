@@ -14,12 +14,12 @@ from scipy import fft
 from models.checks import Array
 from models.rig import Chain, RigRecord
 from models.rig import measure as measuring_chain
-from tests.calibration.gap.case import Case, measure
+from models.rig.seal import Seal
+from tests.calibration.gap.case import Case, measure, seal_of
 from tests.calibration.gap.second_set import second_noise
 
 _HARMONICS = 6
 _DRAWS = 100
-_REVERSAL = 2e-4  # m/s, of the rig's smooth seals
 
 
 def nats_left(case: Case, terms: Sequence[str] = ()) -> float:
@@ -47,9 +47,10 @@ def nats_left(case: Case, terms: Sequence[str] = ()) -> float:
         ]
     )
     if terms:
+        seal = seal_of(case)
         columns = np.concatenate(
             [
-                np.stack([whitened(column, w) for column in _columns(r, terms)], axis=1)
+                np.stack([whitened(column, w) for column in _columns(r, terms, seal)], axis=1)
                 for r, w in zip(records, weights, strict=True)
             ]
         )
@@ -58,15 +59,21 @@ def nats_left(case: Case, terms: Sequence[str] = ()) -> float:
     return 0.5 * float(left @ left)
 
 
-def _columns(record: RigRecord, terms: Sequence[str]) -> list[Array]:
-    """Return the terms at the exact motion; friction with its derivative to its reversal speed."""
+def _columns(record: RigRecord, terms: Sequence[str], seal: Seal) -> list[Array]:
+    """Return the terms at the exact motion; friction with its derivative to its reversal speed.
+
+    Friction is the device's own, whatever its law: a baseline that has the right curve.
+    """
     velocity, acceleration = _motion(record)
-    root = np.hypot(velocity, _REVERSAL)
+    ratio = velocity / seal.half_speed
     known = {
         "inertia": [acceleration],
         "viscous-damping": [velocity],
         "quadratic-damping": [velocity * np.abs(velocity)],
-        "coulomb-friction": [velocity / root, velocity * _REVERSAL**2 / root**3],
+        "coulomb-friction": [
+            seal.reversal.share(ratio),
+            ratio * seal.reversal.share_slope(ratio),
+        ],
     }
     return [column for term in terms for column in known[term]]
 

@@ -9,6 +9,7 @@ from models.flow import channel_force
 from models.rig import RigPhysics, sine_point
 from models.rig.drive import make_drive
 from models.rig.physics import flow_law, flow_velocity, fluid_force, seal_force
+from models.rig.seal import Seal
 
 TWELVE = Device.preset("device-12")
 TEN = Device.preset("device-10")
@@ -39,7 +40,9 @@ def bessel_impedance(device, omega):
 
 def test_simple_physics_is_equation_5():
     drive = driven(2.0, 0.01, distortion=0.01)
-    law = flow_law(TWELVE, RigPhysics.simple(), top=1.0)
+    # Seals that reach their limit at a finite speed: others approach Eq. 5's jump more slowly.
+    physics = replace(RigPhysics.simple(), seal_values=Seal(sliding=0.0))
+    law = flow_law(TWELVE, physics, top=1.0)
     c1 = 3 * 800.0 * TWELVE.annulus_area**3 / (4 * TWELVE.channel_area**2)
     c2 = 8 * 0.027 * TWELVE.channel_length * TWELVE.annulus_area**2
     c2 /= TWELVE.channel_radius**2 * TWELVE.channel_area

@@ -1,8 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from models.checks import InputError
-from models.rig.seal import Seal, presliding_friction, smooth_friction
+from models.rig import random_device
+from models.rig.reversal_laws import LAWS
+from models.rig.seal import Seal, draw_seal, presliding_friction, smooth_friction
 
 
 def loop(amplitude, frequency, samples=8192):
@@ -17,12 +21,23 @@ def work(x, force):
     return float(np.sum(0.5 * (force + np.roll(force, -1)) * steps))
 
 
-def test_smooth_law_is_odd_saturates_and_starts_with_its_slope():
-    seal = Seal(sliding=300.0, transition_speed=1e-3)
-    v = np.array([1e-7, 0.5])
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_smooth_law_is_odd_saturates_and_is_half_at_its_half_speed(law):
+    seal = Seal(sliding=300.0, half_speed=1e-3, reversal=law)
+    v = np.array([1e-3, 1e3])
     np.testing.assert_array_equal(smooth_friction(seal, -v), -smooth_friction(seal, v))
-    assert smooth_friction(seal, v)[0] == pytest.approx(300.0 * 1e-4, rel=1e-6)
+    assert smooth_friction(seal, v)[0] == pytest.approx(150.0, rel=1e-9)
     assert smooth_friction(seal, v)[1] == pytest.approx(300.0, rel=1e-5)
+
+
+def test_a_device_keeps_its_seals_and_another_has_others():
+    devices = [random_device(np.random.default_rng([2, i])) for i in range(40)]
+    seals = [draw_seal(device) for device in devices]
+    assert seals == [draw_seal(replace(d, turns=3.0, coulomb_friction=1.0)) for d in devices]
+    assert {seal.reversal for seal in seals} == set(LAWS)
+    assert len({seal.half_speed for seal in seals}) == 40
+    assert all(0.8e-4 <= seal.half_speed <= 1.6e-4 for seal in seals)
+    assert draw_seal(devices[0], stream=1).half_speed != seals[0].half_speed
 
 
 def test_work_of_a_cycle_tends_to_coulombs():

@@ -8,6 +8,8 @@ from models.flow import channel_impedance
 from models.rig import RigPhysics, TestPoint, sine_point
 from models.rig.drive import make_drive
 from models.rig.physics import flow_law, fluid_force, seal_force
+from models.rig.reversal_laws import LAWS
+from models.rig.seal import Seal
 from models.rig.stepping import Element, transmitted_force
 
 TWELVE = Device.preset("device-12")
@@ -43,7 +45,16 @@ def test_spring_and_damper_in_series_with_a_linear_device(frequency):
     assert line(force) / line(drive.velocity) == pytest.approx(expected, rel=2e-3)
 
 
-@pytest.mark.parametrize("physics", [RigPhysics.simple(), RigPhysics(compressibility=False)])
+@pytest.mark.parametrize(
+    "physics",
+    [
+        RigPhysics(compressibility=False),
+        *(
+            replace(RigPhysics.simple(), seal_values=Seal(sliding=0.0, reversal=law))
+            for law in LAWS
+        ),
+    ],
+)
 def test_stiff_element_changes_nothing(physics):
     law = flow_law(TWELVE, physics, top=1.0)
     drive = driven(4.0, 0.01)

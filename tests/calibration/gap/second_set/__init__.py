@@ -1,4 +1,4 @@
-"""A second set of effects, devices, plans and noise: run only at the end, never tuned on.
+"""A second set of effects, devices, seals, plans and noise: run only at the end, never tuned on.
 
 Nothing that names effects may be written or changed with sight of this package. An effect whose
 physics leaves no choice of form keeps the rig's own.
@@ -8,6 +8,7 @@ from models.rig.effects import CATALOGUE, FORMS
 from models.rig.effects.effect import Effect
 from tests.calibration.gap.second_set import behind, damping, dry, elastic, outside, sensors
 from tests.calibration.gap.second_set.bench import second_device, second_noise, second_plan
+from tests.calibration.gap.second_set.reversal import SECOND_LAWS, second_seal
 
 SECOND: dict[str, tuple[Effect, ...]] = {}
 """Forms by id of the catalogue; "outside" for what it has no name for."""
@@ -23,4 +24,12 @@ ONLY_FORM: tuple[str, ...] = tuple(key for key in CATALOGUE if key not in SECOND
 for _key in ONLY_FORM:
     SECOND[_key] = tuple(FORMS[_key].values())
 
-__all__ = ["ONLY_FORM", "SECOND", "second_device", "second_noise", "second_plan"]
+__all__ = [
+    "ONLY_FORM",
+    "SECOND",
+    "SECOND_LAWS",
+    "second_device",
+    "second_noise",
+    "second_plan",
+    "second_seal",
+]

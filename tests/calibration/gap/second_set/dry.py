@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline
 
 from models.checks import Array
 from models.rig.bench import Bench, Scales
-from models.rig.effects.effect import Effect, Values
+from models.rig.effects.effect import Effect, Values, seal_direction
 
 Generator = np.random.Generator
 
@@ -17,15 +17,10 @@ def _reversal(rng: Generator, scales: Scales) -> dict[str, float]:
     return {"reversal": scales.speed * 10.0 ** rng.uniform(-3.7, -2.9)}
 
 
-def _sign(bench: Bench, values: Values) -> Array:
-    """Return friction's direction, reversed over a finite speed."""
-    return np.asarray(np.tanh(bench.v / values["reversal"]))
-
-
 def _ptfe(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # Constantinou, Mokha and Reinhorn, J. Struct. Eng. 116 (1990) 455-474.
     risen = 1.0 - values["fall"] * np.exp(-np.abs(bench.v) / values["speed"])
-    return np.asarray(amount * risen * _sign(bench, values))
+    return np.asarray(amount * risen * np.tanh(bench.v / values["reversal"]))
 
 
 def _draw_ptfe(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -61,13 +56,13 @@ def _lagging(bench: Bench, force: Array, amount: float, values: Values) -> Array
     # Bo and Pavelescu's exponent near 2, with the film's lag (Armstrong-Helouvry 1991).
     before = CubicSpline(bench.t, bench.v)(bench.t - values["lag"])
     fall = np.exp(-((np.abs(before) / values["stribeck_speed"]) ** values["exponent"]))
-    return np.asarray(amount * fall * _sign(bench, values))
+    return np.asarray(amount * fall * seal_direction(bench, values))
 
 
 def _popp(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # Popp and Stelter, Phil. Trans. R. Soc. A 332 (1990) 89-105: hyperbolic fall.
     fall = 1.0 / (1.0 + np.abs(bench.v) / values["stribeck_speed"]) ** 2
-    return np.asarray(amount * fall * _sign(bench, values))
+    return np.asarray(amount * fall * seal_direction(bench, values))
 
 
 def _draw_stribeck(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -80,12 +75,12 @@ def _draw_stribeck(rng: Generator, scales: Scales) -> dict[str, float]:
 
 def _scored(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     s = (bench.x / values["stroke"] - values["centre"]) / values["width"]
-    return np.asarray(amount / (1.0 + np.exp(-s)) * _sign(bench, values))
+    return np.asarray(amount / (1.0 + np.exp(-s)) * seal_direction(bench, values))
 
 
 def _bulge(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     s = (bench.x / values["stroke"] - 0.3 * values["centre"]) / (3.0 * values["width"])
-    return np.asarray(amount * -np.expm1(-(s**2)) * _sign(bench, values))
+    return np.asarray(amount * -np.expm1(-(s**2)) * seal_direction(bench, values))
 
 
 def _draw_bore(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -155,12 +150,14 @@ def _draw_yield(rng: Generator, scales: Scales) -> dict[str, float]:
 EFFECTS = (
     Effect("coulomb-friction", "ptfe", "rises to sliding friction", _ptfe, _draw_ptfe, unit="N"),
     Effect("coulomb-friction", "dupont", "elastic, then plastic", _dupont, _draw_dupont, unit="N"),
-    Effect("stribeck-friction", "lagging", "Gaussian, lagging", _lagging, _draw_stribeck, unit="N"),
-    Effect("stribeck-friction", "popp", "hyperbolic fall", _popp, _draw_stribeck, unit="N"),
+    Effect("stribeck-friction", "lagging", "Gaussian, lagging", _lagging, _draw_stribeck,
+           unit="N", at_seals=True),
+    Effect("stribeck-friction", "popp", "hyperbolic fall", _popp, _draw_stribeck, unit="N",
+           at_seals=True),
     Effect("position-dependent-friction", "scored", "tight at an end", _scored, _draw_bore,
-           unit="N"),
+           unit="N", at_seals=True),
     Effect("position-dependent-friction", "bulge", "wide in the middle", _bulge, _draw_bore,
-           unit="N"),
+           unit="N", at_seals=True),
     Effect("hysteresis", "berg", "friction of filled rubber", _berg, _draw_yield, unit="N"),
     Effect("hysteresis", "leaves", "friction of leaf springs", _leaves, _draw_yield, unit="N"),
 )
