@@ -93,15 +93,15 @@ def refine(
     for place, entry in enumerate(leading):
         name = entry.effects[0]
         starts = contest.starts[name][: _KINDS[min(place, len(_KINDS) - 1)]]
-        several = place == 0 and TERMS[name].acts == "force"
-        found = _best(rows, fit, starts, several, units, frozen)
+        ended = _ENDED if place == 0 and TERMS[name].acts == "force" else 1
+        found = _best(rows, fit, starts, ended, units, frozen)
         if at_most_filtered(found.model):
-            starts = [s for s in contest.starts[name] if not _filtered(s)]
-            if not starts:
+            others = [s for s in contest.starts[name] if not _filtered(s)][:1]
+            if not others:
                 passed_over.append(name)
                 continue
-            instead[name] = starts[0]
-            found = _best(rows, fit, starts[:1], several, units, frozen)
+            instead[name] = others[0]
+            found = _best(rows, fit, others, 1, units, frozen)
         if not np.isfinite(found.chi2):
             continue
         own = found.model.terms[len(fit.model.terms) :]
@@ -128,16 +128,16 @@ def _best(
     rows: Sequence[RecordRows],
     fit: ModelFit,
     starts: Sequence[Entry],
-    several: bool,
+    ended: int,
     units: UnitRows,
     frozen: _Frozen | None,
 ) -> ModelFit:
-    """Return the best of the fits from an effect's starts; `several` of them to their ends."""
+    """Return the best fit from an effect's starts: after first steps `ended` of them go on."""
     models = [extended(fit.model, start) for start in starts]
     if len(models) > 1:
         begun = [_fit(rows, m, units, _FIRST_STEPS, frozen) for m in models]
         begun.sort(key=_dearness)
-        models = [f.model for f in begun[: _ENDED if several else 1]]
+        models = [f.model for f in begun[:ended]]
     best = min((_fit(rows, m, units, _ITERATIONS, frozen) for m in models), key=_dearness)
     if behind_filter(best.model.terms[-1].shape):  # whether its size is possible shows at the end
         best = fit_model(rows, best.model, best.parameters, units=units)
