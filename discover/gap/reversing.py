@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from discover.gap.accuracy import Misfit
 from discover.gap.stages import record_misfit
-from discover.naming.fit import ModelFit, Parameter, fit_model, free_parameters
+from discover.naming.fit import ModelFit, Parameter, fit_model, free_parameters, kind_of
 from discover.naming.reversal import reversing_friction
 from discover.naming.rows import RecordRows
+from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
 _AREA = float(np.log(2.0))  # between sign and tanh, of that between sign and v/sqrt(v^2 + v_t^2)
 _CLEARER = 0.99  # of the sum of records' squared gaps, below which another curve is preferred
 _ANOTHER_WIDTH = 1.5  # times the range of reversal: then it stands for something else
-_MET = 1.1  # of a record's noise, up to which a knee of its own has to bring every gap
+_MET = 1.05  # of their noise, up to which a curve of its own has to bring the records' gaps
+_ANY = 1.35  # likewise, of each one, whose noise is known that well
+_BY_A_KNEE = 0.6  # of what is left above the noise, to which a knee has to bring it
+_OTHER = (4.0, 0.25)  # times the range of reversal, over which a part of it may reverse instead
+_OTHER_SHARE = 0.3
 
 
 def reversing_as_sampled(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     """Return the fit with the curve along which its friction reverses as the samples tell.
 
-    A knee of its own (`sharpness`) could stand for an effect that is missing: it is taken only
-    where nothing is left then.
+    A knee of its own (`sharpness`), or a part that reverses over another range, could stand for an
+    effect that is missing: they are taken only where nothing is left then.
 
     Parameters
     ----------
@@ -36,35 +41,86 @@ def reversing_as_sampled(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     if place is None or Parameter(place, "transition_speed") not in fit.parameters:
         return fit
     best, left = fit, _misfits(rows, fit)
-    form, speed, sharpness = _curve(fit, place)
-    if sharpness == 0.0:
-        as_wide = speed / _AREA if form else speed * _AREA
-        trial = _with_curve(rows, fit, place, 1.0 - form, as_wide, 0.0)
-        width = _curve(trial, place)[1] / as_wide
+    curve = _curve(fit, place)
+    speed = curve["transition_speed"]
+    if curve["sharpness"] == 0.0:
+        as_wide = speed / _AREA if curve["form"] else speed * _AREA
+        other = {"form": 1.0 - curve["form"], "transition_speed": as_wide}
+        trial = _with_curve(rows, fit, place, other)
+        width = _curve(trial, place)["transition_speed"] / as_wide
         now = _misfits(rows, trial)
         if 1.0 / _ANOTHER_WIDTH < width < _ANOTHER_WIDTH and _gap(now) < _CLEARER * _gap(left):
             best, left = trial, now
-    if _met(left):
-        return best
-    form, speed, _ = _curve(best, place)
-    knee = _with_curve(rows, best, place, form, speed, 1.0)
-    now = _misfits(rows, knee)
-    return knee if _met(now) and _gap(now) < _CLEARER * _gap(left) else best
+    return best if _met(left) else _own_curve(rows, best, place, left)
 
 
-def _curve(fit: ModelFit, place: int) -> tuple[float, float, float]:
-    shape = fit.model.terms[place].shape
-    return shape["form"], shape["transition_speed"], shape["sharpness"]
+def with_curve_of(
+    rows: Sequence[RecordRows], fit: ModelFit, other: ModelFit
+) -> ModelFit | None:
+    """Return a fit with the friction's curve that another fit has found; None where it has none.
+
+    Only coefficients are fitted: beside what is missing the curve would move away again.
+    """
+    place, found = reversing_friction(fit.model), reversing_friction(other.model)
+    if place is None or found is None or Parameter(place, "transition_speed") not in fit.parameters:
+        return None
+    curve = _curve(other, found)
+    if kind_of(curve) == kind_of(_curve(fit, place)):
+        return None
+    terms = list(fit.model.terms)
+    terms[place] = FittedTerm(terms[place].id, terms[place].coefficient, curve)
+    model = ForceModel(tuple(terms), fit.model.name)
+    linear = [p for p in free_parameters(model) if p.shape is None]
+    solved = fit_model(rows, model, linear)
+    return fit_model(rows, solved.model, free_parameters(solved.model), iterations=0)
+
+
+def _own_curve(
+    rows: Sequence[RecordRows], fit: ModelFit, place: int, left: Sequence[Misfit]
+) -> ModelFit:
+    """Return the fit with a curve of its own, where that is all that was missing.
+
+    The simplest first: a knee, then a part that reverses over another range.
+    """
+    curve = _curve(fit, place)
+    if curve["other_share"] > 0.0:
+        return fit
+    speed, knee = curve["transition_speed"], {"sharpness": 1.0}
+    trial, now = _as_sampled(rows, fit, place, knee)
+    if _met(now):
+        return trial if _gap(now) < _CLEARER * _gap(left) else fit
+    if _above(now) > _BY_A_KNEE * _above(left):
+        return fit
+    for times in _OTHER:
+        other = {**knee, "other_speed": times * speed, "other_share": _OTHER_SHARE}
+        trials = [_as_sampled(rows, fit, place, {**other, "form": form}) for form in (0.0, 1.0)]
+        met = [found for found, now in trials if _met(now)]
+        if met:
+            return min(met, key=lambda f: f.chi2)
+    return fit
+
+
+def _as_sampled(
+    rows: Sequence[RecordRows], fit: ModelFit, place: int, own: Mapping[str, float]
+) -> tuple[ModelFit, list[Misfit]]:
+    """Return the fit with another curve and what it leaves; harmonics leave the curve open."""
+    begun = _with_curve(rows, fit, place, own)
+    samples = [r.samples for r in rows]
+    found = fit_model(samples, begun.model, begun.parameters)
+    found = fit_model(rows, found.model, begun.parameters, iterations=0)
+    return found, _misfits(rows, found)
+
+
+def _curve(fit: ModelFit, place: int) -> Mapping[str, float]:
+    return fit.model.terms[place].shape
 
 
 def _with_curve(
-    rows: Sequence[RecordRows], fit: ModelFit, place: int, form: float, speed: float,
-    sharpness: float,
+    rows: Sequence[RecordRows], fit: ModelFit, place: int, other: Mapping[str, float]
 ) -> ModelFit:
     terms = list(fit.model.terms)
     friction = terms[place]
-    own = {"form": form, "transition_speed": speed, "sharpness": sharpness}
-    terms[place] = FittedTerm(friction.id, friction.coefficient, {**friction.shape, **own})
+    terms[place] = FittedTerm(friction.id, friction.coefficient, {**friction.shape, **other})
     model = ForceModel(tuple(terms), fit.model.name)
     return fit_model(rows, model, free_parameters(model))
 
@@ -78,5 +134,16 @@ def _gap(left: Sequence[Misfit]) -> float:
     return sum(m.error / max(m.force, 1e-300) for m in left)
 
 
+def _shares(left: Sequence[Misfit]) -> Array:
+    """Return the squares of the records' gaps over their noise."""
+    return np.array([(m.percent / max(m.noise_percent, 1e-300)) ** 2 for m in left])
+
+
 def _met(left: Sequence[Misfit]) -> bool:
-    return all(m.percent <= _MET * m.noise_percent for m in left)
+    shares = _shares(left)
+    return bool(shares.max() <= _ANY**2 and shares.mean() <= _MET**2)
+
+
+def _above(left: Sequence[Misfit]) -> float:
+    """Return how much of the gaps is above the noise."""
+    return float(np.sum(np.maximum(_shares(left) - _MET**2, 0.0)))

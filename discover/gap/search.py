@@ -11,6 +11,7 @@ from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.doubt import Doubt, doubt_of_added, share_of, within_doubt
 from discover.gap.mending import impossible, mended, without_superfluous
+from discover.gap.reversing import with_curve_of
 from discover.gap.stages import Stage, seen_gap, stage
 from discover.naming.ahead import every_joint, pairs_ahead
 from discover.naming.columns import CandidateColumns
@@ -31,6 +32,7 @@ _MOST_MEMBERS = 4  # that are added to the curves of effects
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
 _FEWEST = 20.0  # of chi-square, that an effect has to explain
 _SEVERAL = 4  # records, of which one that stands out may have more noise than was found
+_AGAIN = 8  # effects, that are weighed again where friction's curve is known better
 _OF_OTHERS = 60.0  # of chi-square, that an effect has to explain in the others then
 
 
@@ -113,6 +115,7 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         left = _Open(open_effects, rounds, len(rounds) < most, curves, deep, given, columns)
         found = _next(rows, fitted, now, left, *weighed)
         if found.added is not None:
+            found = _again(rows, fitted, now, left, found, doubt)
             curves, deep, weighed = True, False, None
             gained = misfits(fitted, now.fit) - misfits(fitted, found.added.stage.fit)
             doubt = doubt + share_of(found.added.effect) ** 2 * np.maximum(gained, 0.0)
@@ -198,6 +201,33 @@ def _next(
             second = _tried(rows, fitted, now, left, paired, None, other)
             tried = tried if second.added is None else second
     return tried
+
+
+def _again(
+    rows: Sequence[RecordRows],
+    fitted: Sequence[RecordRows],
+    now: Stage,
+    left: _Open,
+    found: _Next,
+    doubt: Array,
+) -> _Next:
+    """Return the round as named beside friction's curve, where only with the effect it showed.
+
+    Beside another curve the effect's nearest relatives make up for the difference.
+    """
+    if found.added is None or has_joint(found.added.stage.fit.model):
+        return found
+    curved = with_curve_of(fitted, now.fit, found.added.stage.fit)
+    if curved is None:
+        return found
+    ranked = dict.fromkeys(e.effects[0] for e in found.contest.entries if e.effects)
+    likely = set(list(ranked)[:_AGAIN])
+    effects = [e for e in left.effects if e in likely]
+    contest, fits = _weighed(fitted, curved, effects, doubt, left.columns)
+    chances = {**dict.fromkeys(left.effects, 0.0), **contest.probabilities}
+    contest = replace(contest, probabilities=chances)
+    again = _next(rows, fitted, replace(now, fit=curved), left, contest, fits)
+    return found if again.added is None else replace(again, added=replace(again.added, before=now))
 
 
 def _tried(

@@ -197,7 +197,7 @@ def _bounded(
         elif old > 0.0:
             size = sizes[known.scaled_by]
             upper = known.upper * _SLACK
-            if sharp and fitted.id == "coulomb-friction" and parameter.shape == "transition_speed":
+            if sharp and fitted.id == "coulomb-friction" and parameter.shape.endswith("_speed"):
                 upper = _SHARP
             low = max(low, min(known.lower * size / _SLACK, old))
             high = min(high, max(upper * size, old))

@@ -163,8 +163,12 @@ def _place(
     elif fitted.id == "coulomb-friction":
         if shape["transition_speed"] > 0.0:
             sharpness = shape["sharpness"] or 1.0
-            knee = -sharpness if shape["form"] > 0.0 else sharpness  # its sign says which curve
-            curves.append((SMOOTH_FRICTION, value, shape["transition_speed"], knee))
+            sign, share = (-1.0 if shape["form"] > 0.0 else 1.0), shape["other_share"]
+            # The knee's sign says which curve.
+            faster = (1.0 - share) * value
+            curves.append((SMOOTH_FRICTION, faster, shape["transition_speed"], sign * sharpness))
+            if share > 0.0:
+                curves.append((SMOOTH_FRICTION, share * value, shape["other_speed"], sign))
         else:
             row[FRICTION] += value
     elif fitted.id == "stribeck-friction":

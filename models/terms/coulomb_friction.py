@@ -14,6 +14,8 @@ def column(motion: Motion, shape: Shape) -> Array:
     That is tanh(v/v_t), or with `form` 1 the slower v/sqrt(v^2 + v_t^2). A `sharpness` m other than
     0 changes its knee: tanh(u^m)^(1/m) and u/(1 + u^2m)^(1/2m) of u = |v|/v_t, with the sign of v;
     they are the plain curves for m = 1, and a straight line up to a limit for a large one.
+    Where `other_share` is not 0, that share of the friction reverses over `other_speed` (m/s)
+    instead, along the plain curve: seals differ, and a limit may be approached in two stages.
     With a `presliding` length (m) it is the state of bristles that deflect before they slip.
     """
     if shape.get("presliding", 0.0) > 0.0:
@@ -21,12 +23,17 @@ def column(motion: Motion, shape: Shape) -> Array:
     transition = shape.get("transition_speed", 0.0)
     if transition == 0.0:
         return np.sign(motion.velocity)
-    return _reversing(motion.velocity / transition, shape)
+    form, share = shape.get("form", 0.0), shape.get("other_share", 0.0)
+    curve = _reversing(motion.velocity / transition, form, shape.get("sharpness", 0.0))
+    if share == 0.0:
+        return curve
+    other = _reversing(motion.velocity / shape["other_speed"], form, 0.0)
+    return (1.0 - share) * curve + share * other
 
 
-def _reversing(speed: Array, shape: Shape) -> Array:
-    """Return the curve over the speed in transition speeds."""
-    slow, sharpness = shape.get("form", 0.0) > 0.0, shape.get("sharpness", 0.0)
+def _reversing(speed: Array, form: float, sharpness: float) -> Array:
+    """Return one curve over the speed in its transition speeds."""
+    slow = form > 0.0
     if sharpness == 0.0:
         return speed / np.hypot(speed, 1.0) if slow else np.tanh(speed)
     size = np.abs(speed)
@@ -44,10 +51,12 @@ TERM = Term(
     "f0 times sign v; friction reverses over the transition speed, 0 for a jump",
     column,
     parameters=(
-        Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
+        Parameter("transition_speed", 1e-4, 0.3, 0.0, "m/s", "speed", "log"),
         Parameter("presliding", 1e-5, 0.02, 0.0, "m", "displacement", "log"),
         Parameter("form", 0.0, 1.0, 0.0, ""),
         Parameter("sharpness", 0.5, 20.0, 0.0, "", "", "log"),
+        Parameter("other_speed", 1e-4, 0.3, 0.0, "m/s", "speed", "log"),
+        Parameter("other_share", 0.02, 0.98, 0.0, ""),
     ),
     nonnegative=True,
     mistaken_for=("stribeck-friction", "power-law-damping", "hysteresis"),
