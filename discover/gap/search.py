@@ -115,15 +115,15 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         left = _Open(open_effects, rounds, len(rounds) < most, curves, deep, given, columns)
         found = _next(rows, fitted, now, left, *weighed)
         if found.added is not None:
-            found = _again(rows, fitted, now, left, found, doubt)
+            added = _again(rows, fitted, now, left, found.added, doubt)
             curves, deep, weighed = True, False, None
-            gained = misfits(fitted, now.fit) - misfits(fitted, found.added.stage.fit)
-            doubt = doubt + share_of(found.added.effect) ** 2 * np.maximum(gained, 0.0)
-            tried |= set(found.added.dropped)
-            rounds.append(found.added)
+            gained = misfits(fitted, now.fit) - misfits(fitted, added.stage.fit)
+            doubt = doubt + share_of(added.effect) ** 2 * np.maximum(gained, 0.0)
+            tried |= set(added.dropped)
+            rounds.append(added)
             continue
-        added = [r.effect for r in rounds]
-        better = corrected(rows, fitted, now, added, most=_MOST_MEMBERS - members)
+        names = [r.effect for r in rounds]
+        better = corrected(rows, fitted, now, names, most=_MOST_MEMBERS - members)
         if better is None and found.waits:
             curves = False
             continue
@@ -208,26 +208,26 @@ def _again(
     fitted: Sequence[RecordRows],
     now: Stage,
     left: _Open,
-    found: _Next,
+    added: Round,
     doubt: Array,
-) -> _Next:
+) -> Round:
     """Return the round as named beside friction's curve, where only with the effect it showed.
 
     Beside another curve the effect's nearest relatives make up for the difference.
     """
-    if found.added is None or has_joint(found.added.stage.fit.model):
-        return found
-    curved = with_curve_of(fitted, now.fit, found.added.stage.fit)
+    if has_joint(added.stage.fit.model):
+        return added
+    curved = with_curve_of(fitted, now.fit, added.stage.fit)
     if curved is None:
-        return found
-    ranked = dict.fromkeys(e.effects[0] for e in found.contest.entries if e.effects)
+        return added
+    ranked = dict.fromkeys(e.effects[0] for e in added.contest.entries if e.effects)
     likely = set(list(ranked)[:_AGAIN])
     effects = [e for e in left.effects if e in likely]
     contest, fits = _weighed(fitted, curved, effects, doubt, left.columns)
     chances = {**dict.fromkeys(left.effects, 0.0), **contest.probabilities}
     contest = replace(contest, probabilities=chances)
     again = _next(rows, fitted, replace(now, fit=curved), left, contest, fits)
-    return found if again.added is None else replace(again, added=replace(again.added, before=now))
+    return added if again.added is None else replace(again.added, before=now)
 
 
 def _tried(
