@@ -17,6 +17,7 @@ from models.constitutive import FittedTerm, ForceModel
 _AREA = float(np.log(2.0))  # between sign and tanh, of that between sign and v/sqrt(v^2 + v_t^2)
 _CLEARER = 0.99  # of the sum of records' squared gaps, below which another curve is preferred
 _ANOTHER_WIDTH = 1.5  # times the range of reversal: then it stands for something else
+_FINE = 1.1  # of a record's noise, up to which no other curve is sought
 _MET = 1.05  # of their noise, up to which a curve of its own has to bring the records' gaps
 _ANY = 1.35  # likewise, of each one, whose noise is known that well
 _BY_A_KNEE = 0.6  # of what is left above the noise, to which a knee has to bring it
@@ -51,7 +52,7 @@ def reversing_as_sampled(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
         now = _misfits(rows, trial)
         if 1.0 / _ANOTHER_WIDTH < width < _ANOTHER_WIDTH and _gap(now) < _CLEARER * _gap(left):
             best, left = trial, now
-    return best if _met(left) else _own_curve(rows, best, place, left)
+    return best if _fine(best, left) else _own_curve(rows, best, place, left)
 
 
 def with_curve_of(
@@ -86,18 +87,17 @@ def _own_curve(
     if curve["other_share"] > 0.0:
         return fit
     speed, knee = curve["transition_speed"], {"sharpness": 1.0}
-    trial, now = _as_sampled(rows, fit, place, knee)
-    if _met(now):
-        return trial if _gap(now) < _CLEARER * _gap(left) else fit
-    if _above(now) > _BY_A_KNEE * _above(left):
+    trials = [_as_sampled(rows, fit, place, knee)]
+    bent, now = trials[0]
+    if not _met(now) and _above(now) > _BY_A_KNEE * _above(left):
         return fit
-    for times in _OTHER:
+    for times in () if _fine(bent, now) else _OTHER:
         other = {**knee, "other_speed": times * speed, "other_share": _OTHER_SHARE}
-        trials = [_as_sampled(rows, fit, place, {**other, "form": form}) for form in (0.0, 1.0)]
-        met = [found for found, now in trials if _met(now)]
-        if met:
-            return min(met, key=lambda f: f.chi2)
-    return fit
+        trials += [_as_sampled(rows, fit, place, {**other, "form": form}) for form in (0.0, 1.0)]
+        if any(_fine(found, now) for found, now in trials):
+            break
+    met = [found for found, now in trials if _met(now) and _gap(now) < _CLEARER * _gap(left)]
+    return min(met, key=lambda f: f.chi2, default=fit)
 
 
 def _as_sampled(
@@ -137,6 +137,11 @@ def _gap(left: Sequence[Misfit]) -> float:
 def _shares(left: Sequence[Misfit]) -> Array:
     """Return the squares of the records' gaps over their noise."""
     return np.array([(m.percent / max(m.noise_percent, 1e-300)) ** 2 for m in left])
+
+
+def _fine(fit: ModelFit, left: Sequence[Misfit]) -> bool:
+    """Tell whether neither samples nor harmonics show that the curve is another one."""
+    return bool(_shares(left).max() <= _FINE**2) and fit.chi2 <= fit.residual.size
 
 
 def _met(left: Sequence[Misfit]) -> bool:

@@ -140,6 +140,54 @@ def test_friction_of_another_knee_is_no_missing_effect(curve):
     assert all(r.before < 1.1 * r.noise for r in found.records)
 
 
+def langevin(u):
+    """coth u - 1/u: it approaches its limit as slowly as 1/u."""
+    u = np.where(np.abs(u) < 1e-3, 1e-3, u)
+    return 1.0 / np.tanh(u) - 1.0 / u
+
+
+def two_seals(u):
+    return 0.6 * np.tanh(u) + 0.4 * np.tanh(u / 8.0)
+
+
+def relaxing(u):
+    return np.sign(u) * -np.expm1(-np.abs(u))
+
+
+@pytest.mark.parametrize("curve", [langevin, two_seals, relaxing])
+def test_friction_that_nears_its_limit_slowly_is_no_missing_effect(curve):
+    """Of these none is a curve that the catalogue has; the first two were a power law to it."""
+    found = close_gap(
+        campaign(lambda t, x, v, a: device(t, x, v, a) + 90.0 * curve(v / 8e-4)),
+        f"{BASELINE},quadratic-damping,coulomb-friction",
+    )
+    assert found.verdict == "agrees"
+
+
+@pytest.mark.parametrize("curve", [langevin, two_seals])
+def test_what_is_missing_beside_such_friction_keeps_its_name(curve):
+    """Beside friction along tanh a power of its own makes up for the curve, and was named."""
+
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 1500.0 * v * np.abs(v) + 90.0 * curve(v / 8e-4)
+
+    found = close_gap(campaign(law), f"{BASELINE},coulomb-friction")
+    (only,) = found.rounds
+    assert only.effect == "quadratic-damping"
+    assert only.coefficient == pytest.approx(1500.0, rel=0.05)
+    assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
+
+
+@pytest.mark.parametrize("exponent", [0.35, 0.5])
+def test_a_curve_of_friction_s_own_does_not_stand_for_a_power_law(exponent):
+    def law(t, x, v, a):
+        growing = 60.0 * np.sign(v) * np.abs(v / 0.1) ** exponent
+        return device(t, x, v, a) + 60.0 * np.tanh(v / 8e-4) + growing
+
+    found = close_gap(campaign(law), f"{BASELINE},coulomb-friction")
+    assert found.rounds[0].effect == "power-law-damping"
+
+
 @pytest.mark.parametrize("curve", [erf, np.tanh])
 def test_a_knee_does_not_stand_for_a_fall_of_friction(curve):
     def law(t, x, v, a):

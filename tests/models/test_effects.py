@@ -213,6 +213,14 @@ def test_a_sharp_knee_is_a_line_up_to_a_limit_and_a_plain_one_is_the_plain_curve
     np.testing.assert_allclose(sharp, line, atol=0.05 * 7.0)
 
 
+@pytest.mark.parametrize(("form", "curve"), [(0.0, np.tanh), (1.0, lambda u: np.sin(np.arctan(u)))])
+def test_a_share_of_friction_may_reverse_over_another_speed(form, curve):
+    shape = {"transition_speed": 0.02, "form": form, "other_speed": 0.15, "other_share": 0.3}
+    found = force(FittedTerm("coulomb-friction", 7.0, shape))
+    v = MOTION.velocity
+    np.testing.assert_allclose(found, 4.9 * curve(v / 0.02) + 2.1 * curve(v / 0.15), atol=1e-12)
+
+
 def test_a_zero_that_wanders_is_a_sum_of_powers_of_time():
     powers = [FittedTerm("sensor-drift", c, {"power": p}) for c, p in ((2.0, 1.0), (-30.0, 3.0))]
     elapsed = MOTION.time - MOTION.time[0]

@@ -332,6 +332,17 @@ def test_friction_of_another_knee_slows_a_mass_by_its_curve(form: float, sharpne
     np.testing.assert_allclose(response.velocity[:, 0], exact.y[0], atol=2e-6)
 
 
+def test_friction_in_two_parts_slows_a_mass_by_both() -> None:
+    def pull(_: float, v: NDArray[np.float64]) -> NDArray[np.float64]:
+        return -0.03 * np.tanh(v / 0.05) - 0.01 * np.tanh(v / 0.2)
+
+    shape = {"transition_speed": 0.05, "other_speed": 0.2, "other_share": 0.25}
+    law = ForceModel((FittedTerm("coulomb-friction", 0.04, shape),))
+    response = simulate(oscillator(1.0, 0.0, law), step=1e-3, duration=8.0, velocity=0.3)
+    exact = solve_ivp(pull, (0.0, 8.0), [0.3], t_eval=response.time, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(response.velocity[:, 0], exact.y[0], atol=2e-6)
+
+
 def test_works_are_those_of_the_motion() -> None:
     # Independent of the ledger: quadrature of force times velocity over the samples.
     law = rubbing(FittedTerm("viscous-damping", 0.3), friction=0.1)
