@@ -23,6 +23,8 @@ _ANY = 1.35  # likewise, of each one, whose noise is known that well
 _BY_A_KNEE = 0.6  # of what is left above the noise, to which a knee has to bring it
 _OTHER = (4.0, 0.25)  # times the range of reversal, over which a part of it may reverse instead
 _OTHER_SHARE = 0.3
+_FARTHEST = 20.0  # times one part's range, to which the other's may reach: beyond it, a resistance
+_WIDEST = 0.05  # of the greatest speed, likewise
 
 
 def reversing_as_sampled(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
@@ -96,8 +98,20 @@ def _own_curve(
         trials += [_as_sampled(rows, fit, place, {**other, "form": form}) for form in (0.0, 1.0)]
         if any(_fine(found, now) for found, now in trials):
             break
-    met = [found for found, now in trials if _met(now) and _gap(now) < _CLEARER * _gap(left)]
+    met = [
+        found for found, now in trials
+        if _met(now) and _gap(now) < _CLEARER * _gap(left) and _reverses(rows, found, place)
+    ]
     return min(met, key=lambda f: f.chi2, default=fit)
+
+
+def _reverses(rows: Sequence[RecordRows], fit: ModelFit, place: int) -> bool:
+    """Tell whether both parts of a curve are friction that reverses, and none a resistance."""
+    curve = _curve(fit, place)
+    if curve["other_share"] == 0.0:
+        return True
+    less, more = sorted((curve["transition_speed"], curve["other_speed"]))
+    return more < min(_FARTHEST * less, _WIDEST * max(r.sizes["speed"] for r in rows))
 
 
 def _as_sampled(

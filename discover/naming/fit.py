@@ -198,7 +198,7 @@ def _bounded(
             size = sizes[known.scaled_by]
             upper = known.upper * _SLACK
             if sharp and fitted.id == "coulomb-friction" and parameter.shape.endswith("_speed"):
-                upper = _SHARP
+                upper = min(upper, _SHARP)
             low = max(low, min(known.lower * size / _SLACK, old))
             high = min(high, max(upper * size, old))
         if parameter.shape == "order":

@@ -55,7 +55,7 @@ TERM = Term(
         Parameter("presliding", 1e-5, 0.02, 0.0, "m", "displacement", "log"),
         Parameter("form", 0.0, 1.0, 0.0, ""),
         Parameter("sharpness", 0.5, 20.0, 0.0, "", "", "log"),
-        Parameter("other_speed", 1e-4, 0.3, 0.0, "m/s", "speed", "log"),
+        Parameter("other_speed", 1e-4, 0.03, 0.0, "m/s", "speed", "log"),
         Parameter("other_share", 0.02, 0.98, 0.0, ""),
     ),
     nonnegative=True,
