@@ -18,6 +18,7 @@ _AREA = float(np.log(2.0))  # between sign and tanh, of that between sign and v/
 _CLEARER = 0.99  # of the sum of records' squared gaps, below which another curve is preferred
 _ANOTHER_WIDTH = 1.5  # times the range of reversal: then it stands for something else
 _FINE = 1.1  # of a record's noise, up to which no other curve is sought
+_LINES = 0.85  # of the number of rows: chi-square up to which their lines show noise alone
 _MET = 1.05  # of their noise, up to which a curve of its own has to bring the records' gaps
 _ANY = 1.35  # likewise, of each one, whose noise is known that well
 _BY_A_KNEE = 0.6  # of what is left above the noise, to which a knee has to bring it
@@ -100,7 +101,7 @@ def _own_curve(
             break
     met = [
         found for found, now in trials
-        if _met(now) and _gap(now) < _CLEARER * _gap(left) and _reverses(rows, found, place)
+        if _met(now) and _noise(found) and _gap(now) < _CLEARER * _gap(left) and _reverses(rows, found, place)
     ]
     return min(met, key=lambda f: f.chi2, default=fit)
 
@@ -155,7 +156,11 @@ def _shares(left: Sequence[Misfit]) -> Array:
 
 def _fine(fit: ModelFit, left: Sequence[Misfit]) -> bool:
     """Tell whether neither samples nor harmonics show that the curve is another one."""
-    return bool(_shares(left).max() <= _FINE**2) and fit.chi2 <= fit.residual.size
+    return bool(_shares(left).max() <= _FINE**2) and _noise(fit)
+
+
+def _noise(fit: ModelFit) -> bool:
+    return fit.chi2 <= _LINES * fit.residual.size
 
 
 def _met(left: Sequence[Misfit]) -> bool:
