@@ -101,7 +101,8 @@ def _own_curve(
             break
     met = [
         found for found, now in trials
-        if _met(now) and _noise(found) and _gap(now) < _CLEARER * _gap(left) and _reverses(rows, found, place)
+        if _met(now) and _noise(found) and _reverses(rows, found, place)
+        and _gap(now) < _CLEARER * _gap(left)
     ]
     return min(met, key=lambda f: f.chi2, default=fit)
 

@@ -24,6 +24,7 @@ _FIRST_STEPS = 2
 _ENDED = 2  # kinds of the first effect's force, that are fitted to the end
 _ITERATIONS = 8
 _ENOUGH = 0.02
+_NEARLY = 0.8  # of the greatest filtered gain
 _SPRING = 8.0  # times the play, that its flanks give under the greatest force
 _BEARS = 0.25  # of the stiffness under the greatest force, that a play has in its middle at most
 _FAR = 30.0  # widths from a soft flank, where it is linear
@@ -139,8 +140,10 @@ def _best(
         begun.sort(key=_dearness)
         models = [f.model for f in begun[:ended]]
     best = min((_fit(rows, m, units, _ITERATIONS, frozen) for m in models), key=_dearness)
-    if behind_filter(best.model.terms[-1].shape):  # whether its size is possible shows at the end
-        best = fit_model(rows, best.model, best.parameters, units=units)
+    gain = best.model.terms[-1]
+    if behind_filter(gain.shape) and abs(gain.coefficient) > _NEARLY * MOST_FILTERED:
+        # Whether its size is possible shows at the end.
+        best = fit_model(rows, best.model, best.parameters, units=units, iterations=_ITERATIONS)
     return best
 
 
