@@ -19,7 +19,7 @@ from discover.naming.contest import Contest, leaves_much, reweighed, run_contest
 from discover.naming.evidence import AGREES, UNKNOWN
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import has_joint
-from discover.naming.refine import refine
+from discover.naming.refine import dearness, refine
 from discover.naming.rows import RecordRows
 from models.checks import Array
 
@@ -227,7 +227,9 @@ def _again(
     chances = {**dict.fromkeys(left.effects, 0.0), **contest.probabilities}
     contest = replace(contest, probabilities=chances)
     again = _next(rows, fitted, replace(now, fit=curved), left, contest, fits)
-    return added if again.added is None else replace(again.added, before=now)
+    if again.added is None or dearness(again.added.stage.fit) > dearness(added.stage.fit):
+        return added
+    return replace(again.added, before=now)
 
 
 def _tried(

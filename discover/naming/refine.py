@@ -137,9 +137,9 @@ def _best(
     models = [extended(fit.model, start) for start in starts]
     if len(models) > 1:
         begun = [_fit(rows, m, units, _FIRST_STEPS, frozen) for m in models]
-        begun.sort(key=_dearness)
+        begun.sort(key=dearness)
         models = [f.model for f in begun[:ended]]
-    best = min((_fit(rows, m, units, _ITERATIONS, frozen) for m in models), key=_dearness)
+    best = min((_fit(rows, m, units, _ITERATIONS, frozen) for m in models), key=dearness)
     gain = best.model.terms[-1]
     if behind_filter(gain.shape) and abs(gain.coefficient) > _NEARLY * MOST_FILTERED:
         # Whether its size is possible shows at the end.
@@ -158,7 +158,7 @@ def _filtered(start: Entry) -> bool:
     return behind_filter(start.variants[0].parts[0].shape)
 
 
-def _dearness(fit: ModelFit) -> float:
+def dearness(fit: ModelFit) -> float:
     """Return the chi-square of a fit and what its parameters cost: the least is the best."""
     spent = len(fit.parameters) * float(np.log(fit.residual.size))
     return float(np.nan_to_num(fit.chi2, nan=np.inf)) + spent

@@ -188,7 +188,7 @@ def test_a_curve_of_friction_s_own_does_not_stand_for_a_power_law(exponent):
     assert found.rounds[0].effect == "power-law-damping"
 
 
-@pytest.mark.parametrize("curve", [erf, np.tanh])
+@pytest.mark.parametrize("curve", [erf, np.tanh, two_seals])
 def test_a_knee_does_not_stand_for_a_fall_of_friction(curve):
     def law(t, x, v, a):
         return device(t, x, v, a) + (60.0 + 30.0 * np.exp(-np.abs(v) / 0.02)) * curve(v / 1e-3)
