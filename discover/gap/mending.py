@@ -101,4 +101,4 @@ def impossible(model: ForceModel, name: str) -> bool:
     """Tell whether some part of an effect has a sign or a size that it can't have."""
     own = [t for t in model.terms if t.id == name]
     pulls = any(t.term.nonnegative and t.coefficient <= 0.0 for t in own)
-    return pulls or at_most_filtered(ForceModel(tuple(own)))
+    return pulls or at_most_filtered(own)

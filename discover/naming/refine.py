@@ -96,7 +96,7 @@ def refine(
         starts = contest.starts[name][: _KINDS[min(place, len(_KINDS) - 1)]]
         ended = _ENDED if place == 0 and TERMS[name].acts == "force" else 1
         found = _best(rows, fit, starts, ended, units, frozen)
-        if at_most_filtered(found.model):
+        if at_most_filtered(found.model.terms[len(fit.model.terms) :]):
             others = [s for s in contest.starts[name] if not _filtered(s)][:1]
             if not others:
                 passed_over.append(name)
@@ -147,11 +147,9 @@ def _best(
     return best
 
 
-def at_most_filtered(model: ForceModel) -> bool:
+def at_most_filtered(terms: Sequence[FittedTerm]) -> bool:
     """Tell whether a gain behind a filter is as great as it may be: then it is none."""
-    return any(
-        behind_filter(t.shape) and abs(t.coefficient) >= MOST_FILTERED for t in model.terms
-    )
+    return any(behind_filter(t.shape) and abs(t.coefficient) >= MOST_FILTERED for t in terms)
 
 
 def _filtered(start: Entry) -> bool:

@@ -167,8 +167,10 @@ def _place(
             # The knee's sign says which curve.
             faster = (1.0 - share) * value
             curves.append((SMOOTH_FRICTION, faster, shape["transition_speed"], sign * sharpness))
-            if share > 0.0:
+            if shape["other_speed"] > 0.0:
                 curves.append((SMOOTH_FRICTION, share * value, shape["other_speed"], sign))
+            else:
+                row[FRICTION] += share * value
         else:
             row[FRICTION] += value
     elif fitted.id == "stribeck-friction":

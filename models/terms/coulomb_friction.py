@@ -15,7 +15,8 @@ def column(motion: Motion, shape: Shape) -> Array:
     0 changes its knee: tanh(u^m)^(1/m) and u/(1 + u^2m)^(1/2m) of u = |v|/v_t, with the sign of v;
     they are the plain curves for m = 1, and a straight line up to a limit for a large one.
     Where `other_share` is not 0, that share of the friction reverses over `other_speed` (m/s)
-    instead, along the plain curve: seals differ, and a limit may be approached in two stages.
+    instead, 0 for a jump, along the plain curve: seals differ, and a limit may be approached in
+    two stages.
     With a `presliding` length (m) it is the state of bristles that deflect before they slip.
     """
     if shape.get("presliding", 0.0) > 0.0:
@@ -27,7 +28,9 @@ def column(motion: Motion, shape: Shape) -> Array:
     curve = _reversing(motion.velocity / transition, form, shape.get("sharpness", 0.0))
     if share == 0.0:
         return curve
-    other = _reversing(motion.velocity / shape["other_speed"], form, 0.0)
+    speed = shape.get("other_speed", 0.0)
+    jump = np.sign(motion.velocity)
+    other = _reversing(motion.velocity / speed, form, 0.0) if speed > 0.0 else jump
     return (1.0 - share) * curve + share * other
 
 

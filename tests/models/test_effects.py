@@ -219,6 +219,8 @@ def test_a_share_of_friction_may_reverse_over_another_speed(form, curve):
     found = force(FittedTerm("coulomb-friction", 7.0, shape))
     v = MOTION.velocity
     np.testing.assert_allclose(found, 4.9 * curve(v / 0.02) + 2.1 * curve(v / 0.15), atol=1e-12)
+    jumping = force(FittedTerm("coulomb-friction", 7.0, {**shape, "other_speed": 0.0}))
+    np.testing.assert_allclose(jumping, 4.9 * curve(v / 0.02) + 2.1 * np.sign(v), atol=1e-12)
 
 
 def test_a_zero_that_wanders_is_a_sum_of_powers_of_time():
