@@ -82,6 +82,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         return _complain(str(error), BAD_INPUT)
     except (KeyboardInterrupt, typer.Abort):
+        # An interrupt of code in a string, as imports run it, would have Python leave by the
+        # signal whatever is returned here, until other code in a string has run.
+        exec("")
         return _complain("interrupted", INTERRUPTED)
     except BrokenPipeError:
         # The reader has gone; nothing more can be said to it, at exit either.

@@ -71,9 +71,7 @@ def with_curve_of(
     curve = _curve(other, found)
     if kind_of(curve) == kind_of(_curve(fit, place)):
         return None
-    terms = list(fit.model.terms)
-    terms[place] = FittedTerm(terms[place].id, terms[place].coefficient, curve)
-    model = ForceModel(tuple(terms), fit.model.name)
+    model = _model_with(fit, place, curve)
     linear = [p for p in free_parameters(model) if p.shape is None]
     solved = fit_model(rows, model, linear)
     return fit_model(rows, solved.model, free_parameters(solved.model), iterations=0)
@@ -134,11 +132,16 @@ def _curve(fit: ModelFit, place: int) -> Mapping[str, float]:
 def _with_curve(
     rows: Sequence[RecordRows], fit: ModelFit, place: int, other: Mapping[str, float]
 ) -> ModelFit:
+    model = _model_with(fit, place, {**_curve(fit, place), **other})
+    return fit_model(rows, model, free_parameters(model))
+
+
+def _model_with(fit: ModelFit, place: int, curve: Mapping[str, float]) -> ForceModel:
+    """Return the fitted model with another curve of its friction, which is its term at `place`."""
     terms = list(fit.model.terms)
     friction = terms[place]
-    terms[place] = FittedTerm(friction.id, friction.coefficient, {**friction.shape, **other})
-    model = ForceModel(tuple(terms), fit.model.name)
-    return fit_model(rows, model, free_parameters(model))
+    terms[place] = FittedTerm(friction.id, friction.coefficient, curve)
+    return ForceModel(tuple(terms), fit.model.name)
 
 
 def _misfits(rows: Sequence[RecordRows], fit: ModelFit) -> list[Misfit]:
@@ -161,10 +164,12 @@ def _fine(fit: ModelFit, left: Sequence[Misfit]) -> bool:
 
 
 def _noise(fit: ModelFit) -> bool:
+    """Tell whether the lines of what is left are noise alone."""
     return fit.chi2 <= _LINES * fit.residual.size
 
 
 def _met(left: Sequence[Misfit]) -> bool:
+    """Tell whether the samples of what is left are noise alone, by all records and by each."""
     shares = _shares(left)
     return bool(shares.max() <= _ANY**2 and shares.mean() <= _MET**2)
 

@@ -146,17 +146,27 @@ def langevin(u):
     return 1.0 / np.tanh(u) - 1.0 / u
 
 
-def two_seals(u):
-    return 0.6 * np.tanh(u) + 0.4 * np.tanh(u / 8.0)
-
-
 def relaxing(u):
     return np.sign(u) * -np.expm1(-np.abs(u))
 
 
-@pytest.mark.parametrize("curve", [langevin, two_seals, relaxing])
+def uneven(u):
+    """Two seals, of which the wider one nears its limit slowly."""
+    return 0.6 * erf(u) + 0.4 * langevin(u / 6.0)
+
+
+def arcs(u):
+    return 2.0 / np.pi * (0.6 * np.arctan(u) + 0.4 * np.arctan(u / 8.0))
+
+
+def two_seals(u):
+    """Two seals along the catalogue's own curve: the other four are along none that it has."""
+    return 0.6 * np.tanh(u) + 0.4 * np.tanh(u / 8.0)
+
+
+@pytest.mark.parametrize("curve", [langevin, relaxing, uneven, arcs, two_seals])
 def test_friction_that_nears_its_limit_slowly_is_no_missing_effect(curve):
-    """Of these none is a curve that the catalogue has; the first two were a power law to it."""
+    """Along one part only, the last three were named Stribeck friction, uneven a power law too."""
     found = close_gap(
         campaign(lambda t, x, v, a: device(t, x, v, a) + 90.0 * curve(v / 8e-4)),
         f"{BASELINE},quadratic-damping,coulomb-friction",
@@ -164,9 +174,9 @@ def test_friction_that_nears_its_limit_slowly_is_no_missing_effect(curve):
     assert found.verdict == "agrees"
 
 
-@pytest.mark.parametrize("curve", [langevin, two_seals])
-def test_what_is_missing_beside_such_friction_keeps_its_name(curve):
-    """Beside friction along tanh a power of its own makes up for the curve, and was named."""
+@pytest.mark.parametrize("curve", [langevin, relaxing, two_seals])
+def test_what_is_missing_beside_such_friction_is_whole(curve):
+    """Beside a curve without a knee of its own it came out 6 to 7 % off beside the first two."""
 
     def law(t, x, v, a):
         return device(t, x, v, a) + 1500.0 * v * np.abs(v) + 90.0 * curve(v / 8e-4)

@@ -4,18 +4,19 @@ import numpy as np
 import pytest
 
 from discover.gap import close_gap
+from models.constitutive import FittedTerm, ForceModel
 from tests.discover.gap_data import campaign
 
 BASELINE = "fit:inertia,viscous-damping"
 GAIN = 0.2
 
 
-def amplified(time_constant):
-    """The linear device's force and a fifth of it behind a low-pass, by their phasors."""
+def amplified(time_constant, gain=GAIN):
+    """The linear device's force and a share of it behind a low-pass, by their phasors."""
 
     def law(t, x, v, a):
         omega = (np.sum(a**2) / np.sum(x**2)) ** 0.25
-        passed = GAIN / (1.0 + 1j * omega * time_constant)
+        passed = gain / (1.0 + 1j * omega * time_constant)
         late_a, late_v = omega * v, omega * x  # a quarter of a cycle ago
         force, quarter = 120.0 * a + 800.0 * v, 120.0 * late_a + 800.0 * late_v
         return (1.0 + passed.real) * force - passed.imag * quarter
@@ -55,3 +56,21 @@ def test_a_delay_is_no_gain_behind_a_filter():
     first = found.rounds[0]
     assert first.effect == "time-delay"
     assert first.coefficient == pytest.approx(late, rel=0.05)
+
+
+@pytest.mark.parametrize(("time_constant", "gain"), [(0.02, 0.45), (0.05, 0.6)])
+def test_no_sensor_is_said_to_add_half_of_its_signal_behind_a_filter(time_constant, gain):
+    """With its filter so great a gain is any delay, or any memory of a flow."""
+    found = close_gap(campaign(amplified(time_constant, gain)), BASELINE)
+    gains = [r for r in found.rounds if r.effect == "sensor-gain"]
+    assert not any(r.parameters["filter_time"] for r in gains)
+
+
+def test_a_gain_that_a_model_was_given_may_be_greater():
+    def law(t, x, v, a):
+        return amplified(0.02, 0.41)(t, x, v, a) + 1500.0 * v * np.abs(v)
+
+    given = FittedTerm("sensor-gain", 0.41, {"filter_time": 0.02})
+    plain = FittedTerm("inertia", 120.0), FittedTerm("viscous-damping", 800.0)
+    found = close_gap(campaign(law), ForceModel((*plain, given)))
+    assert found.rounds[0].effect == "quadratic-damping"

@@ -343,6 +343,28 @@ def test_friction_in_two_parts_slows_a_mass_by_both() -> None:
     np.testing.assert_allclose(response.velocity[:, 0], exact.y[0], atol=2e-6)
 
 
+def test_a_part_of_friction_that_jumps_brings_a_mass_to_rest() -> None:
+    # dv/dt = -f (1 - s) tanh(v / v_t) - f s down to rest, which the jump holds from there on.
+    shape = {"transition_speed": 0.05, "other_speed": 0.0, "other_share": 0.25}
+    law = ForceModel((FittedTerm("coulomb-friction", 0.04, shape),))
+    response = simulate(oscillator(1.0, 0.0, law), step=1e-3, duration=14.0, velocity=0.3)
+
+    def pull(_: float, v: NDArray[np.float64]) -> NDArray[np.float64]:
+        return -0.03 * np.tanh(v / 0.05) - 0.01
+
+    def rest(_: float, v: NDArray[np.float64]) -> float:
+        return float(v[0])
+
+    rest.terminal = True
+    exact = solve_ivp(pull, (0.0, 14.0), [0.3], events=rest, rtol=1e-10, atol=1e-12,
+                      dense_output=True)
+    stop = exact.t_events[0][0]
+    assert 7.0 < stop < 12.0
+    moving, velocity = response.time < stop, response.velocity[:, 0]
+    np.testing.assert_allclose(velocity[moving], exact.sol(response.time[moving])[0], atol=1e-5)
+    assert np.abs(velocity[response.time > stop + 2e-3]).max() == 0.0
+
+
 def test_works_are_those_of_the_motion() -> None:
     # Independent of the ledger: quadrature of force times velocity over the samples.
     law = rubbing(FittedTerm("viscous-damping", 0.3), friction=0.1)
