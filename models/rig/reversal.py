@@ -9,11 +9,12 @@ from functools import cached_property, lru_cache
 import numpy as np
 from scipy.optimize import brentq
 
-from models.checks import Array
+from models.checks import Array, InputError
 
 Curve = Callable[[Array], Array]
 _TABLE = 4097
-_WIDEST = 1e6
+_FAR = 1e6
+_NEAR = 1e-4
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,11 @@ class Reversal:
 
     Every law is scaled so that half of the limit is reached at the same speed, whatever it is
     written in: a law says how the force turns over, not how fast.
+
+    Raises
+    ------
+    InputError
+        For a curve that does not rise from 0 at rest to 1.
 
     Examples
     --------
@@ -33,14 +39,25 @@ class Reversal:
     name: str
     """What the law is called."""
     rise: Curve
-    """Share of the limit at the law's own variable u >= 0: from 0 to 1, monotone."""
+    """Share of the limit at the law's own variable u >= 0, of any shape: from 0 to 1, monotone."""
     slope: Curve
-    """Its derivative to u, finite."""
+    """Its derivative to u, likewise, finite."""
+
+    def __post_init__(self) -> None:
+        """Refuse curves that are no share of a limit."""
+        start, end = (float(self.rise(np.array(u))) for u in (0.0, _FAR))
+        if start != 0.0 or not abs(end - 1.0) < _NEAR:
+            raise InputError(
+                "rise",
+                expected=f"from 0 at rest to 1, and there at u = {_FAR:g}",
+                found=f"{start:g} to {end:g}",
+                where=f"reversal {self.name}",
+            )
 
     @cached_property
     def half(self) -> float:
         """The law's own variable where half of the limit is reached."""
-        return float(brentq(lambda u: float(self.rise(np.array(u))) - 0.5, 0.0, _WIDEST))
+        return float(brentq(lambda u: float(self.rise(np.array(u))) - 0.5, 0.0, _FAR))
 
     def share(self, ratio: Array) -> Array:
         """Return the share of the limit, -1 to 1, at velocity over half speed, of any shape."""

@@ -12,17 +12,16 @@ import numpy as np
 from models.checks import Array
 from models.rig.reversal import Reversal
 
-_STRESS = 10.0
+_SLIP_SPEED = 10.0
 _SECOND_SHARE, _SECOND_SPEED = 0.5, 10.0
-_SMALL = 1e-2
 
 
 def _parabola(u: Array) -> Array:
     """Return u (2 - u), 1 beyond u = 1.
 
     M. Li et al., *ACM Trans. Graphics* 39 (2020) 49, for contact with dry friction. Junctions that
-    each shear a film up to a limit at a speed of their own add up to it where their number grows
-    with that speed.
+    each shear a film up to a limit at a speed of their own add up to it where their number is
+    in proportion to that speed, up to u = 1.
     """
     s = np.minimum(u, 1.0)
     return np.asarray(s * (2.0 - s))
@@ -39,11 +38,11 @@ def _activated(u: Array) -> Array:
     283-291), up to the stress at which it slips (S. Bair and W. O. Winer, *J. Lubrication
     Technology* 101 (1979) 251-257).
     """
-    return np.asarray(np.arcsinh(_STRESS * np.minimum(u, 1.0)) / math.asinh(_STRESS))
+    return np.asarray(np.arcsinh(_SLIP_SPEED * np.minimum(u, 1.0)) / math.asinh(_SLIP_SPEED))
 
 
 def _activated_slope(u: Array) -> Array:
-    slope = _STRESS / math.asinh(_STRESS) / np.sqrt(1.0 + (_STRESS * u) ** 2)
+    slope = _SLIP_SPEED / math.asinh(_SLIP_SPEED) / np.sqrt(1.0 + (_SLIP_SPEED * u) ** 2)
     return np.asarray(np.where(u < 1.0, slope, 0.0))
 
 
@@ -62,34 +61,25 @@ def _two_films_slope(u: Array) -> Array:
     return np.asarray((1.0 - _SECOND_SHARE) * first + _SECOND_SHARE * second)
 
 
-def _alignment(u: Array) -> Array:
-    """Return coth u - 1/u: u/3 - u^3/45 + 2 u^5/945 where small.
+def _fractal_spots(u: Array) -> Array:
+    """Return u/2, 1 - 1/(2 u) beyond u = 1: the mean of min(1, u/X), 1/X even from 0 to 1.
 
-    Mean alignment of independent carriers, here chains of the rubber's surface, that shear turns
-    its way against thermal agitation (P. Langevin, *Ann. Chim. Phys.* 5 (1905) 70-127).
+    Elastic contact spots of a fractal profile, here of dimension 4/3 (A. Majumdar and B. Bhushan,
+    *J. Tribology* 113 (1991) 1-11): the smaller a spot, the higher its pressure, and with it the
+    stress that limits its film (S. Bair and W. O. Winer, *J. Lubrication Technology* 101 (1979)
+    251-257), which it reaches at a speed X, 1 for the largest.
     """
-    large = np.maximum(u, _SMALL)
-    small = np.minimum(u, _SMALL)
-    series = small / 3.0 - small**3 / 45.0 + 2.0 * small**5 / 945.0
-    # coth u = 1 + 2 exp(-2u)/(1 - exp(-2u)) does not overflow; the series does not cancel.
-    fall = np.exp(-2.0 * large)
-    exact = 1.0 - 2.0 * fall / np.expm1(-2.0 * large) - 1.0 / large
-    return np.asarray(np.where(u < _SMALL, series, exact))
+    return np.asarray(np.where(u < 1.0, 0.5 * u, 1.0 - 0.5 / np.maximum(u, 1.0)))
 
 
-def _alignment_slope(u: Array) -> Array:
-    large = np.maximum(u, _SMALL)
-    fall = np.exp(-2.0 * large)
-    small = np.minimum(u, _SMALL)
-    series = 1.0 / 3.0 - small**2 / 15.0 + 2.0 * small**4 / 189.0
-    exact = 1.0 / large**2 - 4.0 * fall / np.expm1(-2.0 * large) ** 2
-    return np.asarray(np.where(u < _SMALL, series, exact))
+def _fractal_spots_slope(u: Array) -> Array:
+    return np.asarray(0.5 / np.maximum(u, 1.0) ** 2)
 
 
 LAWS: tuple[Reversal, ...] = (
     Reversal("parabola", _parabola, _parabola_slope),
     Reversal("activated film", _activated, _activated_slope),
     Reversal("two films", _two_films, _two_films_slope),
-    Reversal("alignment", _alignment, _alignment_slope),
+    Reversal("fractal spots", _fractal_spots, _fractal_spots_slope),
 )
 """Laws of this file: what a device of the rig draws from."""

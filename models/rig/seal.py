@@ -73,7 +73,9 @@ def draw_seal(device: Device, laws: Sequence[Reversal] = LAWS, *, stream: int = 
 
 
 def smooth_friction(seal: Seal, velocity: Array) -> Array:
-    """Return f s(v/v_h), N, at velocities of any shape: s the seal's reversal, v_h its half speed.
+    """Return f s(v/v_h), N, at velocities v of any shape, m/s.
+
+    f is the seal's sliding friction, s its reversal and v_h its half speed.
 
     Examples
     --------

@@ -43,7 +43,7 @@ def _two_heights(u: Array) -> Array:
 
     Two populations of asperities of Gaussian heights (Greenwood and Williamson 1966), each of
     friction along the error function (N. Mostaghel and T. Davis, *Earthquake Engng Struct. Dyn.*
-    26 (1997) 163-169).
+    26 (1997) 541-548).
     """
     share, ratio = _HEIGHTS
     return np.asarray((1.0 - share) * erf(u) + share * erf(u / ratio))
