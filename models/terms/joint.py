@@ -16,7 +16,7 @@ _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
 _SETTLED = 5e-4
 _LEAD = 4  # of a cycle this part is stepped ahead: most joints forget within it how they began
-_SHORT = 2048  # samples of one cycle; longer periods of many cycles settle within one
+_SHORT = 8192  # samples of one cycle; longer periods of many cycles settle within one
 _LEAST_INNER, _MOST_INNER = 4, 60
 _MOST_STEPS = 1_000_000  # of one pass: a stiffer joint is as stiff as they can follow
 _ADDED_MASS = 1e-3  # of what would make the whole force: a damper's own time can't be stepped
@@ -154,12 +154,18 @@ def _step(
                     pressed, bearing = _flanks(abs(depth) / soft, half / soft)
                     force = stiffness * soft * (pressed if depth > 0.0 else -pressed)
                     force += damping * bearing * (pace - now)
-                elif depth > half:
-                    force = stiffness * (depth - half) + damping * (pace - now)
-                    force = max(force, 0.0) if half > 0.0 else force
-                elif depth < -half:
-                    force = stiffness * (depth + half) + damping * (pace - now)
-                    force = min(force, 0.0) if half > 0.0 else force
+                elif half > 0.0:
+                    side = 1.0 if depth > 0.0 else -1.0
+                    push, held = _pushed(
+                        abs(depth) - half, side * (pace - now), stiffness, damping, h
+                    )
+                    force, held = side * push, held * damping
+                    if held > 0.0:
+                        resisted = (viscous + quadratic * abs(now)) * now + spring * position
+                        ahead = (force + held * (now - speed) - resisted) / (mass + 0.5 * h * held)
+                        force += held * (now - speed - 0.5 * h * ahead)
+                else:
+                    force = stiffness * depth + damping * (pace - now)
                 if refilled == 1:
                     if turned_for < 0.0 and (force < lower or force > upper):
                         turned_for, limit = 0.0, lower if force < lower else upper
@@ -204,6 +210,33 @@ def _step(
                 position, speed = before[0, 0] + x[0], before[0, 1]
                 known = 0
     return result
+
+
+@njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+def _pushed(
+    deep: float, closing: float, stiffness: float, damping: float, h: float
+) -> tuple[float, float]:
+    """Return what a flank that only pushes does on average over a step, met or left within it.
+
+    It is `deep` (m) in the middle of the step and goes deeper at `closing` (m/s).
+    """
+    reach = 0.5 * h * abs(closing)
+    if closing > 0.0:
+        if deep >= reach:
+            return stiffness * deep + damping * closing, 1.0
+        if deep <= -reach:
+            return 0.0, 0.0
+        held = deep + reach  # deepest within the step, of 2 reach
+        share = held / (2.0 * reach)
+        return share * (0.5 * stiffness * held + damping * closing), share
+    middle = stiffness * deep + damping * closing
+    if middle >= stiffness * reach:
+        return middle, 1.0
+    if middle <= -stiffness * reach:
+        return 0.0, 0.0
+    most = middle + stiffness * reach
+    share = most / (2.0 * stiffness * reach)
+    return share * 0.5 * most, share
 
 
 @njit(cache=True, inline="always")  # type: ignore[untyped-decorator]

@@ -17,7 +17,7 @@ _LEAST_DRY = 1e-6  # of the force's root mean square
 _SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
 _REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
 _MOST_KNOWN = 128  # that are remembered
-_CYCLE = 4096  # samples of a motion at most, whose columns are
+_CYCLE = 8192  # samples of a motion at most, whose columns are
 
 
 @dataclass(frozen=True)
