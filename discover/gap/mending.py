@@ -11,8 +11,9 @@ from discover.naming.contest import Contest
 from discover.naming.evidence import Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.forces import has_joint, is_joint, of_each_test
+from discover.naming.polish import polished
 from discover.naming.refine import at_most_filtered, extended
-from discover.naming.restart import best_range, polished, restarted
+from discover.naming.restart import best_range, restarted
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 

@@ -10,6 +10,7 @@ import numpy as np
 from discover.gap.accuracy import Misfit, misfit, pooled
 from discover.naming.fit import ModelFit, fit_model
 from discover.naming.forces import by_others, has_joint, model_force
+from discover.naming.polish import counted
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import UnitRows, whole_model
 from models.checks import Array
@@ -61,7 +62,7 @@ def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
         return ()
     if not fit.parameters:
         return tuple(record_misfit(r, fit.model) for r in rows)
-    seen = [r.samples for r in rows] if has_joint(fit.model) else rows
+    seen = counted(rows, fit) if has_joint(fit.model) else rows
     changes = any(t.term.acts != "force" for t in fit.model.terms)
     units = UnitRows()
     along = _tangents_of_each(seen, fit, units) if changes else None
@@ -86,7 +87,10 @@ def _tangents_of_each(
     rows: Sequence[RecordRows], fit: ModelFit, units: UnitRows
 ) -> list[Array]:
     """Return the tangents of every record's rows at a fit."""
-    here = fit_model(rows, fit.model, fit.parameters, iterations=0, units=units, exact=False)
+    here = fit_model(
+        rows, fit.model, fit.parameters, iterations=0, units=units, exact=False,
+        rough=not has_joint(fit.model),
+    )
     return np.split(here.tangents, np.cumsum([r.target.size for r in rows])[:-1], axis=1)
 
 

@@ -9,7 +9,8 @@ no phase is lost, and what the records' noise does to each line is known.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +18,11 @@ from numpy.typing import NDArray
 from discover.motion_fit.noise_spectrum import NoiseSpectrum
 from discover.records import Record
 from models.checks import Array
-from models.motion import Motion
+from models.motion import Motion, harmonic_motion
 
 Lines = NDArray[np.complex128]
+_FINE = 8192  # points of a cycle in which a joint's impacts are simulated
+_MOVES = 1e-9  # of the fundamental, below which a harmonic is round-off
 
 
 def real_rows(lines: Lines) -> Array:
@@ -100,6 +103,18 @@ class Observation:
     """Number of the record in its campaign, from 1; 0 where it is not known."""
     usable: slice = field(default_factory=lambda: slice(None))
     """Samples of the record that are used."""
+
+    @cached_property
+    def resolved(self) -> Observation:
+        """The same with a cycle whose grid shows impacts, which are shorter than a harmonic."""
+        if self.cycle is None or self.cycle.displacement.size >= _FINE:
+            return self
+        place = self.cycle.displacement
+        phasors = np.fft.rfft(place)[: place.size // 2] * (2.0 / place.size)
+        phasors[0] *= 0.5
+        moves = np.abs(phasors) > _MOVES * np.abs(phasors[1])
+        phasors = phasors[: np.flatnonzero(moves)[-1] + 1]
+        return replace(self, cycle=harmonic_motion(phasors, self.frequency, samples=_FINE))
 
     @property
     def file(self) -> str:

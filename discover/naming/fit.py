@@ -255,6 +255,7 @@ def fit_model(
     exact: bool = True,
     along: Array | None = None,
     stay: Array | None = None,
+    rough: bool = True,
 ) -> ModelFit:
     """Return the model with `parameters` fitted, started from its own values.
 
@@ -280,6 +281,8 @@ def fit_model(
     stay : array, optional
         (P, P) curvature that draws the parameters to their start. For models that are not sums of
         forces.
+    rough : bool
+        Whether steps leave out that a joint passes an added force on changed.
     """
     target = np.concatenate([r.target for r in rows])
     sizes = {name: max(r.sizes[name] for r in rows) for name in rows[0].sizes}
@@ -293,7 +296,7 @@ def fit_model(
     def slopes() -> Array:
         if along is not None:
             return along
-        return _tangents(rows, units, model, parameters, at, linear=linear, rough=True)
+        return _tangents(rows, units, model, parameters, at, linear=linear, rough=rough)
 
     tangents = slopes()
     begun = np.array([value_of(model, p) for p in parameters])

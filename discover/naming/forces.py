@@ -121,11 +121,24 @@ def _from_cycle(observation: Observation, force: Array) -> Array:
     return np.asarray(np.interp(phase, grid, np.append(force, force[0])))
 
 
-def model_force(observation: Observation, model: ForceModel) -> Array:
+def model_force(
+    observation: Observation, model: ForceModel, *, resolved: bool = True
+) -> Array:
     """Return the model's force on the motion's grid, (N,) N.
 
     What has memory is evaluated over one steady cycle of a sine test; the rest at the samples.
+
+    Parameters
+    ----------
+    observation : Observation
+        The record.
+    model : ForceModel
+        As fitted.
+    resolved : bool
+        Whether a joint's impacts are simulated as finely as samples show them; lines don't.
     """
+    if resolved and has_joint(model):
+        observation = observation.resolved
     return _force(observation, of_test(observation, model))
 
 
@@ -252,7 +265,7 @@ class Trial:
 
     @cached_property
     def _late_from(self) -> Array:
-        return model_force(self.observation, self.model)
+        return model_force(self.observation, self.model, resolved=False)
 
     @cached_property
     def _on_cycle(self) -> Array | None:
@@ -289,7 +302,7 @@ class Trial:
         shifts = term.id == DELAY or behind_filter(shape)
         if share > 0.0 and shifts and self.observation.at is not None:
             late = ForceModel((*self.model.terms, FittedTerm(term.id, probe, shape)))
-            return (model_force(self.observation, late) - self._late_from) / probe
+            return (model_force(self.observation, late, resolved=False) - self._late_from) / probe
         cycle = self.observation.cycle if self.on_cycle(term, shape) else None
         motion = self.observation.motion if cycle is None else cycle
         if share == 0.0:

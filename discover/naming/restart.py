@@ -12,7 +12,7 @@ from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
 from discover.naming.scales import Scales, scales_of
-from discover.naming.scattered import scattered, unexplained
+from discover.naming.scattered import unexplained
 from discover.naming.unit_rows import UnitRows, whole_model
 from models.constitutive import FittedTerm, ForceModel
 
@@ -36,24 +36,10 @@ _AGAIN = 12
 _ENOUGH = 0.003
 _TURNS = 3  # of starts around the best so far,
 _MUCH = 0.5  # as long as chi-square falls to this share
-_POLISH = 6
 _RANGE_STEPS = 8
 _SETTLED = 0.9  # of chi-square, to which another turn has to bring it
 _BY_FAR = 0.7  # of the misfit without the joint
 _GOOD = 1.5  # of chi-square a row, up to which no other start is sought
-
-
-def polished(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
-    """Return a fit through a joint as the samples tell, which see when impacts happen."""
-    samples = [r.samples for r in rows]
-    start = fit_model(samples, fit.model, ())
-    better = fit_model(
-        samples, fit.model, fit.parameters, iterations=_POLISH, enough=_ENOUGH, exact=False
-    )
-    better = scattered(samples, better)
-    if not better.chi2 < start.chi2:
-        return fit
-    return fit_model(rows, better.model, better.parameters, iterations=0)
 
 
 def restarted(

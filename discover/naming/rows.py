@@ -8,11 +8,11 @@ change of the lowest harmonics. Other records are windowed, and their windows sh
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, diags_array
 
 from discover.motion_fit import Observation, real_rows
 from discover.sine_fit import harmonic_design
@@ -77,8 +77,42 @@ class RecordRows:
         def project(columns: Array) -> Array:
             return np.asarray(scale * np.asarray(columns)[..., :count])
 
+        o = o.resolved
         on_cycle = scale * _between(o)[:, :count]
         return RecordRows(o, project(o.measured), project, 8.0, self.held, on_cycle)
+
+
+def weighed_by(rows: RecordRows, noise: float) -> RecordRows:
+    """Return rows whose noise is that many times what it was."""
+    return _mapped(rows, diags_array(np.full(rows.target.size, 1.0 / noise), format="csr"))
+
+
+def smoothed(samples: RecordRows, width: float) -> RecordRows:
+    """Return samples each averaged twice over a share of a cycle; others as they are."""
+    o = samples.observation
+    if samples.cycle_rows is None or samples.sample_rows is not None:
+        return samples
+    count = int(width / (o.motion.step * o.frequency))
+    if count < 2:
+        return samples
+    kernel = np.convolve(np.full(count, 1.0 / count), np.full(count, 1.0 / count))
+    places = np.arange(kernel.size) - count + 1
+    size = samples.target.size
+    return _mapped(samples, diags_array(kernel, offsets=places, shape=(size, size), format="csr"))
+
+
+def _mapped(rows: RecordRows, onto: csr_array) -> RecordRows:
+    """Return rows that are combined by a matrix (R, R)."""
+
+    def project(columns: Array) -> Array:
+        return np.asarray(rows.project(columns) @ onto)
+
+    on_cycle = None if rows.cycle_rows is None else rows.cycle_rows @ onto
+    at_samples = None if rows.sample_rows is None else rows.sample_rows @ onto
+    return replace(
+        rows, target=rows.target @ onto, project=project, cycle_rows=on_cycle,
+        sample_rows=at_samples,
+    )
 
 
 def record_rows(

@@ -10,11 +10,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import Bounds, differential_evolution
 from scipy.stats import qmc
 
 from discover.naming.columns import span_of, without_basis
-from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
+from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.rows import RecordRows
 from discover.naming.scales import scales_of
 from discover.naming.unit_rows import UnitRows
@@ -35,10 +36,11 @@ _RANK_ON, _EVOLVE_ON = 2, 4  # records
 _STEPS = 6
 _ENOUGH = 0.003
 _SHAKEN = 1e300  # chi-square where a joint shook itself apart
-_GOOD = 1.5  # of chi-square a sample, up to which nothing better is sought
 
 
-def scattered(samples: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
+def scattered(
+    samples: Sequence[RecordRows], fit: ModelFit, telling: Sequence[int] | NDArray[np.intp]
+) -> ModelFit:
     """Return the better of a fit and one whose joint was sought over all of its range.
 
     Parameters
@@ -46,21 +48,22 @@ def scattered(samples: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     samples : sequence of RecordRows
         The records' samples as rows.
     fit : ModelFit
-        Fitted to them; its last term is the joint.
+        Its last term is the joint.
+    telling : sequence of int
+        Records that tell most, that first.
     """
     *rest, joint = fit.model.terms
-    if not joint.shape.get("contact", 0.0) or fit.chi2 < _GOOD * fit.residual.size:
+    if not joint.shape.get("contact", 0.0):
         return fit
     box = _Box.around(joint, scales_of([r.observation for r in samples]).omega)
-    order = np.argsort(misfits(samples, fit))[::-1]
-    telling = [samples[i] for i in order[:_EVOLVE_ON]]
+    seen = [samples[i] for i in telling[:_EVOLVE_ON]]
     units = UnitRows()
 
     def model(point: Array) -> ForceModel:
         return ForceModel((*rest, FittedTerm(joint.id, 1.0, box.shape(point))), fit.model.name)
 
-    few = unexplained(telling[:_RANK_ON], rest, units)
-    more = unexplained(telling, rest, units)
+    few = unexplained(seen[:_RANK_ON], rest, units)
+    more = unexplained(seen, rest, units)
 
     def cost(point: Array) -> float:
         return more(model(point))
@@ -77,7 +80,7 @@ def scattered(samples: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
         samples, other, free_parameters(other), iterations=_STEPS, enough=_ENOUGH, units=units,
         exact=False,
     )
-    return found if found.chi2 < fit.chi2 else fit
+    return found if found.chi2 < fit_model(samples, fit.model, (), units=units).chi2 else fit
 
 
 def unexplained(

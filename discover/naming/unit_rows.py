@@ -104,7 +104,7 @@ class UnitRows:
         changes = [t for t in whole.terms if t.term.acts != "force"]
         sampled = any(at_samples(t.term, t.shape) for t in changes)
         if sampled or (changes and r.cycle_rows is None):
-            added[:] = r.project(model_force(r.observation, whole))
+            added[:] = r.project(model_force(r.observation, whole, resolved=False))
         elif changes and r.cycle_rows is not None:
             with np.errstate(over="ignore", invalid="ignore"):  # a joint that shakes itself apart
                 added += self._change(r, steady_part(whole)) @ r.cycle_rows

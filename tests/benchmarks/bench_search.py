@@ -23,7 +23,7 @@ _CYCLES = 8.3
 _SIZES = (2_500, 10_000)
 _GAP, _FLANK, _LOSS = 4e-5, 3e8, 2e5
 """m of play on either side, N/m and N s/m of what it ends at."""
-_PERIODS, _POINTS = 5, 4096
+_PERIODS, _POINTS = 5, 65536
 _TERMS = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
 
 

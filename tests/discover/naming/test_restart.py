@@ -9,8 +9,9 @@ from scipy.optimize import brentq
 from discover.motion_fit import observe
 from discover.naming.fit import fit_model, free_parameters
 from discover.naming.forces import has_joint, is_joint
+from discover.naming.polish import polished
 from discover.naming.refine import is_a_spring
-from discover.naming.restart import polished, restarted
+from discover.naming.restart import restarted
 from discover.naming.rows import record_rows
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import sine_motion
@@ -74,7 +75,7 @@ def test_samples_of_other_terms_are_their_force(play):
     np.testing.assert_allclose(scale, scale[0])
     velocity = r.observation.motion.velocity
     np.testing.assert_allclose(rows.project(velocity), scale[0] * velocity[:count])
-    cycle = r.observation.cycle.velocity
+    cycle = rows.observation.cycle.velocity
     near = np.abs(cycle @ rows.cycle_rows - rows.project(velocity)).max()
     assert near < 1e-3 * np.abs(rows.project(velocity)).max()
 
