@@ -40,9 +40,10 @@ def polished(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     samples = [r.samples for r in rows]
     begun = _Left.by(samples, fit)
     best = min(begun, _Left.by(samples, _settled(samples, fit, _EVEN, rough=True)), key=_gap)
-    if best.gap > _CLOSED:
+    impacts = fit.model.terms[-1].shape.get("contact", 0.0) > 0.0
+    if impacts and best.gap > _CLOSED:
         best = min(best, _Left.by(samples, _step_by_step(samples, best.fit)), key=_gap)
-    if best.gap > _FAR:
+    if impacts and best.gap > _FAR:
         other = scattered(best.tolerated(_EVEN), best.fit, best.loudest)
         if other is not best.fit:
             best = min(best, _Left.by(samples, _step_by_step(samples, other)), key=_gap)
