@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from discover.motion_fit import observe
+from discover.naming import polish
 from discover.naming.fit import fit_model, free_parameters
 from discover.naming.forces import has_joint, is_joint
 from discover.naming.polish import polished
@@ -21,15 +22,15 @@ DEVICE = (FittedTerm("inertia", 120.0), FittedTerm("viscous-damping", 800.0))
 PLAY = {"gap": 2e-4, "contact": 400.0, "loss": 0.5, "inside": 0.0}
 
 
-def through(joint):
+def through(joint, points=1024):
     model = ForceModel((*DEVICE, joint))
 
     def law(t, x, v, a):
         amplitude = round(float(np.abs(x).max()), 5)
         frequency = round(float(np.abs(v).max()) / amplitude / (2.0 * np.pi), 2)
-        cycle = sine_motion(amplitude, frequency, samples=1024)
+        cycle = sine_motion(amplitude, frequency, samples=points)
         force = model.force(cycle)
-        grid = np.arange(1025) / 1024.0
+        grid = np.arange(points + 1) / points
         return np.interp(np.mod(t * frequency, 1.0), grid, np.append(force, force[0]))
 
     return [record_rows(observe(r)) for r in campaign(law).records]
@@ -64,6 +65,25 @@ def test_samples_say_more_of_impacts_than_lines(play):
     before = fit_model(samples, rough.model, ()).chi2
     assert fit_model(samples, found.model, ()).chi2 < 0.8 * before
     assert found.residual.size == rough.residual.size
+
+
+def unwanted(*_):
+    raise AssertionError("sought further")
+
+
+def test_a_good_fit_is_polished_without_seeking_another_joint(monkeypatch):
+    monkeypatch.setattr(polish, "scattered", unwanted)
+    monkeypatch.setattr(polish, "_step_by_step", unwanted)
+    model = ForceModel((*DEVICE, FittedTerm("backlash", 1.0, PLAY)))
+    fine = through(model.terms[2], points=8192)
+    good = fit_model(fine, model, free_parameters(model), iterations=0)
+    assert polished(fine, good).model.terms[2].shape["gap"] == pytest.approx(2e-4, rel=0.01)
+
+
+def test_a_mount_that_yields_has_no_impacts_to_step_to(play, monkeypatch):
+    monkeypatch.setattr(polish, "_step_by_step", unwanted)
+    model = ForceModel((*DEVICE, FittedTerm("series-compliance", 1e-8)))
+    assert polished(play, fit_model(play, model, free_parameters(model), iterations=1))
 
 
 def test_samples_of_other_terms_are_their_force(play):
