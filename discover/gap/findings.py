@@ -74,8 +74,9 @@ def findings_of(
             Finding(
                 "warning",
                 f"{found.rejected} would lower the misfit in terms of the records' noise, but not"
-                " the gap in force, and is not added: the noise differs much between records, or"
-                " the model is wrong in more than one way.",
+                " the gap in force, or that only of records that it is fitted to, and is not added:"
+                " the noise differs much between records, or the model is wrong in more than one"
+                " way.",
             )
         )
     for entry in found.rounds:

@@ -10,7 +10,7 @@ from discover.gap.stages import left_out, record_misfit, without
 from discover.naming.contest import Contest
 from discover.naming.evidence import Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
-from discover.naming.forces import has_joint, is_joint, of_each_test
+from discover.naming.forces import has_impacts, has_joint, is_joint, of_each_test
 from discover.naming.polish import polished
 from discover.naming.refine import at_most_filtered, extended
 from discover.naming.restart import best_range, restarted
@@ -44,7 +44,7 @@ def mended(
         found = best_range(rows, found)
     else:
         found = restarted(rows, found) if is_joint(name) else found
-        found = polished(rows, found) if has_joint(found.model) else found
+        found = polished(rows, found) if has_impacts(found.model) else found
     return found if has_joint(found.model) else reversing_as_sampled(rows, found)
 
 

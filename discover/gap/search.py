@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from discover.gap.accuracy import Misfit, pooled
 from discover.gap.baseline import Baseline
 from discover.gap.correction import Correction, corrected, with_member
 from discover.gap.doubt import Doubt, doubt_of_added, share_of, within_doubt
@@ -18,7 +19,7 @@ from discover.naming.columns import CandidateColumns
 from discover.naming.contest import Contest, leaves_much, reweighed, run_contest
 from discover.naming.evidence import AGREES, UNKNOWN
 from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
-from discover.naming.forces import has_joint
+from discover.naming.forces import has_joint, of_each_test
 from discover.naming.refine import dearness, refine
 from discover.naming.rows import RecordRows
 from models.checks import Array
@@ -28,6 +29,7 @@ _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
 _NOTICED = 0.005  # of the gap, that an effect has to close
 _CLEARLY = 0.1  # of the mean square relative gap
+_WORSE = 0.02  # of the gap of records that are left out, that an effect may add to it
 _MOST_MEMBERS = 4  # that are added to the curves of effects
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
 _FEWEST = 20.0  # of chi-square, that an effect has to explain
@@ -72,7 +74,8 @@ class Search:
     last: Contest
     """That ended it."""
     rejected: str | None = None
-    """An effect that would have lowered the misfit in its weights, but not the gap in N."""
+    """An effect that would have lowered the misfit in its weights, but not the gap in N, or not
+    that of records that are left out."""
 
     @property
     def final(self) -> Stage:
@@ -252,7 +255,10 @@ def _tried(
     earlier = [r.effect for r in left.rounds if r.effect in {t.id for t in fit.model.terms}]
     fit, dropped = without_superfluous(fitted, fit, earlier)
     after = stage(rows, fit)
-    if not _helps(rows, now, after) and not _shows(rows, fitted, now, after):
+    helps = _helps(rows, now, after) or _shows(rows, fitted, now, after)
+    if helps and left.rounds and not of_each_test(fit.model, name):
+        helps = _predicts(rows, now, after)
+    if not helps:
         refused = contest.without(name) if _beyond(rows, now) else contest.in_doubt(name)
         return _Next(refused, rejected=name)
     return _Next(contest, Round(name, contest, now, after, dropped))
@@ -266,15 +272,26 @@ def _helps(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
     """
     if seen_gap(rows, after) <= (1.0 - _NOTICED) * seen_gap(rows, before):
         return True
-    was, now = (
-        sum(
-            m.error / max(m.force, 1e-300)
-            for r, m in zip(rows, at.misfits, strict=True)
-            if not r.observation.held_out
-        )
-        for at in (before, after)
-    )
+    seen = [i for i, r in enumerate(rows) if not r.observation.held_out]
+    was, now = (_by_record([at.misfits[i] for i in seen]) for at in (before, after))
     return now < (1.0 - _CLEARLY) * was
+
+
+def _predicts(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
+    """Tell whether records that are left out in turn are not predicted worse; those held out judge.
+
+    What a further effect explains of the records that it is fitted to may be their own.
+    """
+    if any(r.observation.held_out for r in rows) or not before.unseen:
+        return True
+    if pooled(after.unseen) <= (1.0 + _WORSE) * pooled(before.unseen):
+        return True
+    return _by_record(after.unseen) < (1.0 - _CLEARLY) * _by_record(before.unseen)
+
+
+def _by_record(misfits: Sequence[Misfit]) -> float:
+    """Return the sum of mean square relative gaps: every record counts alike."""
+    return sum(m.error / max(m.force, 1e-300) for m in misfits)
 
 
 def _shows(

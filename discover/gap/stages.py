@@ -9,7 +9,7 @@ import numpy as np
 
 from discover.gap.accuracy import Misfit, misfit, pooled
 from discover.naming.fit import ModelFit, fit_model
-from discover.naming.forces import by_others, has_joint, model_force
+from discover.naming.forces import by_others, has_impacts, has_joint, model_force
 from discover.naming.polish import counted
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import UnitRows, whole_model
@@ -62,7 +62,7 @@ def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
         return ()
     if not fit.parameters:
         return tuple(record_misfit(r, fit.model) for r in rows)
-    seen = counted(rows, fit) if has_joint(fit.model) else rows
+    seen = counted(rows, fit) if has_impacts(fit.model) else rows
     changes = any(t.term.acts != "force" for t in fit.model.terms)
     units = UnitRows()
     along = _tangents_of_each(seen, fit, units) if changes else None

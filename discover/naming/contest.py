@@ -30,7 +30,7 @@ from discover.naming.evidence import (
     unusual,
     usual_left,
 )
-from discover.naming.fit import ModelFit, kind_of, misfits
+from discover.naming.fit import ModelFit, kind_of, telling
 from discover.naming.forces import MOST_FILTERED, behind_filter, in_record, is_joint
 from discover.naming.pairs import pairs_with, unlikely
 from discover.naming.reversal import other_reversals, reversal_doubt
@@ -208,11 +208,11 @@ def _screened(
     if len(rows) <= _TELLING or not joints:
         return list(chosen)
     ends = np.cumsum([r.target.size for r in rows])
-    telling = np.argsort(misfits(rows, fit))[::-1][:_TELLING]
-    seen = np.concatenate([np.arange(ends[i] - rows[i].target.size, ends[i]) for i in telling])
+    chosen_rows = telling(rows, fit, _TELLING)
+    seen = np.concatenate([np.arange(ends[i] - rows[i].target.size, ends[i]) for i in chosen_rows])
     tangents = fit.tangents[:, seen]
     target = without_span(fit.residual[None, seen], tangents)[0]
-    columns = candidate_columns([rows[i] for i in telling], fit.model, joints)
+    columns = candidate_columns([rows[i] for i in chosen_rows], fit.model, joints)
     columns = without_span(columns, tangents)
     along = np.maximum(columns @ target, 0.0)
     explained = along**2 / np.maximum(np.sum(columns**2, axis=1), 1e-300)

@@ -11,7 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.naming.forces import DELAY, MOST_FILTERED, behind_filter, is_joint, share_in
+from discover.naming.forces import (
+    DELAY,
+    MOST_FILTERED,
+    adds_up,
+    behind_filter,
+    is_joint,
+    is_sensor,
+    share_in,
+)
 from discover.naming.rows import RecordRows
 from discover.naming.unit_rows import UnitRows
 from models.checks import Array
@@ -24,6 +32,7 @@ _WHOLE_POWERS = {"viscous-damping": 1.0, "quadratic-damping": 2.0}
 _STEP = 1e-4  # of a value, for its tangent
 _JOINT_STEP = 1e-3  # likewise behind a joint, whose simulated cycle closes to less
 ITERATIONS = 40
+_IDLE = 2  # steps that gain nothing, at which a fit ends; with tangents that are kept the first
 _TRIES = 6
 _DAMPING = 1e-4
 _LEAST_DAMPING = 1e-10
@@ -129,15 +138,25 @@ def _tangents(
     sensor makes of it is not left out, since a gain would keep steps from ever arriving.
     """
     result = np.empty((len(parameters), at.size))
-    rough = rough and not any(
-        t.term.acts == "output" and not is_joint(t.id) and t.id != DELAY
-        for r in rows for t in (*r.held, *model.terms)
-    )
+    terms = [t for r in rows for t in (*r.held, *model.terms)]
+    sensors = [t for t in terms if is_sensor(t.term)]
+    adding = all(adds_up(t.term, t.shape) for t in sensors)
+    through = any(is_joint(t.id) for t in terms)
+    rough = rough and adding
+
+    unchanged = linear or (rough and all(t.id == DELAY for t in sensors))
+
+    def alone(fitted: FittedTerm, *, unchanged: bool) -> Array:
+        if unchanged:
+            return units.of_all(rows, fitted)
+        return units.of_sensed(rows, fitted, model)
+
     for index, parameter in enumerate(parameters):
         fitted = model.terms[parameter.term]
         value = value_of(model, parameter)
-        if parameter.shape is None and (linear or (rough and fitted.term.acts == "force")):
-            result[index] = units.of_all(rows, fitted)
+        adds = fitted.term.acts == "force" and (linear or rough or (adding and not through))
+        if parameter.shape is None and adds:
+            result[index] = alone(fitted, unchanged=unchanged)
             continue
         step = (_STEP if linear else _JOINT_STEP) * abs(value) or 1e-6
         if parameter.shape in ("order", "exponent"):
@@ -146,9 +165,11 @@ def _tangents(
         if fitted.shape.get("only", 0.0) > 0.0 and not linear:
             result[index] = _in_one_test(rows, units, fitted, other, at) / step
             continue
-        if linear:
-            moved = other.terms[parameter.term]
-            change = fitted.coefficient * (units.of_all(rows, moved) - units.of_all(rows, fitted))
+        if adds and not through:
+            here, moved = (
+                alone(t, unchanged=linear) for t in (fitted, other.terms[parameter.term])
+            )
+            change = fitted.coefficient * (moved - here)
         else:
             change = units.of_model(rows, other) - at
         result[index] = np.where(np.isfinite(change), change, 0.0) / step
@@ -234,6 +255,11 @@ def misfits(rows: Sequence[RecordRows], fit: ModelFit) -> Array:
     """Return every record's part (N,) of a fit's chi-square."""
     ends = np.cumsum([r.target.size for r in rows])[:-1]
     return np.array([float(np.sum(part**2)) for part in np.split(fit.residual, ends)])
+
+
+def telling(rows: Sequence[RecordRows], fit: ModelFit, most: int) -> list[int]:
+    """Return which records, `most` of them, a fit leaves the greatest misfits in, that first."""
+    return [int(i) for i in np.argsort(misfits(rows, fit))[::-1][:most]]
 
 
 def inverse(gram: Array) -> Array:
@@ -338,7 +364,7 @@ def fit_model(
             break
         tangents = slopes()
         idle = idle + 1 if before - chi2 <= enough * max(chi2, 1.0) else 0
-        if idle == 2:
+        if idle == (_IDLE if along is None else 1):
             break
     if exact and not linear:
         tangents = _tangents(rows, units, model, parameters, at, linear=False)

@@ -11,7 +11,7 @@ from discover.motion_fit import Observation
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
-from models.terms import TERMS, Shape, Term
+from models.terms import TERMS, ForceOf, Shape, Term
 from models.terms.sensor_gain import low_passed_cycle
 from models.terms.time_delay import between_samples, delay_at
 
@@ -35,6 +35,14 @@ def behind_filter(shape: Shape) -> bool:
     return shape.get("filter_time", 0.0) > 0.0
 
 
+def adds_up(term: Term, shape: Shape) -> bool:
+    """Tell whether a sensor makes of a sum of forces the sum of what it makes of each."""
+    if term.id == DELAY:
+        return True
+    part = shape.get("one_way", 0.0) > 0.0 or shape.get("threshold", 0.0) > 0.0
+    return term.id == "sensor-gain" and not part and shape.get("side", 1.0) >= 0.0
+
+
 def at_samples(term: Term, shape: Shape) -> bool:
     """Tell whether a term is evaluated at the samples: what shifts them, or changes meanwhile."""
     return term.id == DELAY or behind_filter(shape) or in_record(term, shape)
@@ -45,9 +53,22 @@ def has_joint(model: ForceModel) -> bool:
     return any(is_joint(t.id) for t in model.terms)
 
 
+def has_impacts(model: ForceModel) -> bool:
+    """Tell whether a joint in a model is met at once, as flanks or a closing void are.
+
+    What only yields moves smoothly: lines tell it as well as samples do.
+    """
+    return any(is_joint(t.id) and t.shape.get("contact", 0.0) > 0.0 for t in model.terms)
+
+
 def is_joint(effect: str) -> bool:
     """Tell whether an effect is a joint, simulated in time."""
     return TERMS[effect].acts == "input" or effect == "cavitation"
+
+
+def is_sensor(term: Term) -> bool:
+    """Tell whether a term changes what is read of a force, and not how the device moves."""
+    return term.acts == "output" and not is_joint(term.id)
 
 
 def in_record(term: Term, shape: Shape) -> bool:
@@ -137,7 +158,7 @@ def model_force(
     resolved : bool
         Whether a joint's impacts are simulated as finely as samples show them; lines don't.
     """
-    if resolved and has_joint(model):
+    if resolved and has_impacts(model):
         observation = observation.resolved
     return _force(observation, of_test(observation, model))
 
@@ -231,7 +252,7 @@ def steady_part(model: ForceModel) -> ForceModel:
     return ForceModel(tuple(t for t in model.terms if not in_record(t.term, t.shape)))
 
 
-def change_on_cycle(observation: Observation, model: ForceModel, added: Array) -> Array:
+def change_on_cycle(observation: Observation, model: ForceModel, added: ForceOf) -> Array:
     """Return what changes of input and output do to a model's force over one cycle, (G,) N.
 
     Parameters
@@ -240,18 +261,14 @@ def change_on_cycle(observation: Observation, model: ForceModel, added: Array) -
         Of a sine test.
     model : ForceModel
         Its `steady_part`.
-    added : ndarray, shape (G,)
-        The sum of the model's terms that add a force on the cycle, N. Where it is the same array
-        again, joints know their device.
+    added : callable
+        The sum of the model's terms that add a force, N, on a motion. Where it gives the same
+        array again on the cycle, joints know their device.
     """
     cycle = observation.cycle
     if cycle is None:
         raise ValueError("only a sine test has a cycle")
-
-    def force_of(moved: Motion) -> Array:
-        return added if moved is cycle else model.added(moved)
-
-    return model.changed(force_of, cycle) - added
+    return model.changed(added, cycle) - added(cycle)
 
 
 @dataclass(frozen=True)

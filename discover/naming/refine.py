@@ -9,7 +9,7 @@ import numpy as np
 
 from discover.naming.contest import Contest, reweighed
 from discover.naming.evidence import AGREES, Entry
-from discover.naming.fit import ModelFit, fit_model, free_parameters
+from discover.naming.fit import ModelFit, fit_model, free_parameters, telling
 from discover.naming.forces import MOST_FILTERED, behind_filter, has_joint, is_joint
 from discover.naming.restart import best_range
 from discover.naming.reversal import with_reversal
@@ -21,6 +21,7 @@ from models.terms import TERMS
 _LEADING = 6
 _KINDS = (6, 4, 2, 1)  # of shapes that are fitted, of the first effect, the second, ...
 _FIRST_STEPS = 2
+_BEGUN_ON = 8  # records, where each evaluation costs a simulation
 _ENDED = 2  # kinds of the first effect's force, that are fitted to the end
 _ITERATIONS = 8
 _ENOUGH = 0.02
@@ -136,7 +137,10 @@ def _best(
     """Return the best fit from an effect's starts: after first steps `ended` of them go on."""
     models = [extended(fit.model, start) for start in starts]
     if len(models) > 1:
-        begun = [_fit(rows, m, units, _FIRST_STEPS, frozen) for m in models]
+        seen = rows
+        if models[0].terms[-1].term.acts != "force":
+            seen = [rows[i] for i in telling(rows, fit, _BEGUN_ON)]
+        begun = [_fit(seen, m, units, _FIRST_STEPS, frozen) for m in models]
         begun.sort(key=dearness)
         models = [f.model for f in begun[:ended]]
     best = min((_fit(rows, m, units, _ITERATIONS, frozen) for m in models), key=dearness)

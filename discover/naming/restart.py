@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 
 from discover.naming.columns import without_span
-from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits
+from discover.naming.fit import ModelFit, fit_model, free_parameters, misfits, telling
 from discover.naming.forces import model_force
 from discover.naming.rows import RecordRows
 from discover.naming.scales import Scales, scales_of
@@ -120,24 +120,24 @@ def _best_start(
     """Return the best of the fit and fits from a few starts, of what added forces can't explain."""
     *rest, joint = fit.model.terms
     units = UnitRows()
-    chosen = _telling(rows, fit if instead_of is None else instead_of)
-    telling = [rows[i] for i in chosen]
+    chosen = telling(rows, fit if instead_of is None else instead_of, _TRIED)
+    seen = [rows[i] for i in chosen]
     seeds = [ForceModel((*rest, _whole(seed)), fit.model.name) for seed in (joint, *besides)]
-    around = _ranked(telling[:_FIRST_LEG], seeds, units)[0][1].terms[-1] if besides else joint
+    around = _ranked(seen[:_FIRST_LEG], seeds, units)[0][1].terms[-1] if besides else joint
     others = (*besides, *_others(around, scales_of([r.observation for r in rows])))
     models = [ForceModel((*rest, other), fit.model.name) for other in others]
     without = None if instead_of is None else misfits(rows, instead_of)[chosen]
     if len(models) > _SECOND_LEG:
-        starts = _ranked(telling[:_FIRST_LEG], models, units)
+        starts = _ranked(seen[:_FIRST_LEG], models, units)
         if without is not None and starts[0][0] > _BY_FAR * float(np.sum(without[:_FIRST_LEG])):
             return fit
         models = [m for _, m in starts[:_SECOND_LEG]]
-    starts = _ranked(telling, models, units)
+    starts = _ranked(seen, models, units)
     if without is not None and starts and starts[0][0] > _BY_FAR * float(np.sum(without)):
         return fit
     begun = [
         fit_model(
-            telling, model, free_parameters(model), iterations=_FIRST_STEPS, units=units,
+            seen, model, free_parameters(model), iterations=_FIRST_STEPS, units=units,
             exact=False,
         )
         for _, model in starts[:_FIRST]
@@ -162,11 +162,6 @@ def _ranked(
     left = unexplained(rows, models[0].terms, units) if models else None
     found = [(left(model), model) for model in models] if left else []
     return sorted(found, key=lambda s: s[0])
-
-
-def _telling(rows: Sequence[RecordRows], fit: ModelFit) -> list[int]:
-    """Return which records have the greatest misfits, that first: starts are tried on these."""
-    return [int(i) for i in np.argsort(misfits(rows, fit))[::-1][:_TRIED]]
 
 
 def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:

@@ -10,6 +10,7 @@ from discover.naming.forces import (
     Trial,
     at_samples,
     change_on_cycle,
+    is_sensor,
     model_force,
     of_test,
     steady_part,
@@ -18,9 +19,11 @@ from discover.naming.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
+from models.terms.joint_device import at_rest
 
 _FORCES = 4  # a record, that are remembered
-_COLUMNS = 64  # likewise
+_CHANGED = 4  # likewise
+_COLUMNS = 128  # likewise
 _SHAPES = 64  # over all records, likewise
 _SAME = 1e-12  # of the greatest force
 _MOSTLY = 0.5  # of the samples, from which a force is projected whole
@@ -41,6 +44,7 @@ class UnitRows:
         self._rows: dict[int, RecordRows] = {}
         self._forces: dict[int, dict[Hashable, Array]] = {}
         self._columns: dict[int, dict[Hashable, Array]] = {}
+        self._changed: dict[int, dict[Hashable, Array]] = {}
 
     def of(self, r: RecordRows, fitted: FittedTerm) -> Array:
         """Return the rows (R,) of a term that adds a force, in one record."""
@@ -90,47 +94,81 @@ class UnitRows:
         end = 0
         for r in rows:
             begin, end = end, end + r.target.size
-            self._complete(result[begin:end], r, model)
+            for t in r.held:
+                if t.term.acts == "force":
+                    result[begin:end] += t.coefficient * self.of(r, t)
+            if any(t.term.acts != "force" for t in (*r.held, *model.terms)):
+                self._complete(result[begin:end], r, whole_model(r, model))
         return result
 
-    def _complete(self, added: Array, r: RecordRows, model: ForceModel) -> None:
-        """Complete the rows of what a model adds by what a record holds and what is changed."""
-        for t in r.held:
-            if t.term.acts == "force":
-                added += t.coefficient * self.of(r, t)
-        if all(t.term.acts == "force" for t in (*r.held, *model.terms)):
-            return
-        whole = of_test(r.observation, whole_model(r, model))
+    def of_sensed(
+        self, rows: Sequence[RecordRows], fitted: FittedTerm, model: ForceModel
+    ) -> Array:
+        """Return the rows (R,) of a term that adds a force, as a model's sensors read it alone.
+
+        They are the term's share of the whole where every sensor `adds_up`.
+        """
+        unit = FittedTerm(fitted.id, 1.0, fitted.shape)
+        parts = []
+        for r in rows:
+            sensors = [t for t in (*r.held, *model.terms) if is_sensor(t.term)]
+            part = self.of(r, fitted).copy()
+            self._complete(part, r, ForceModel((unit, *sensors)))
+            parts.append(part)
+        return np.concatenate(parts)
+
+    def _complete(self, added: Array, r: RecordRows, whole: ForceModel) -> None:
+        """Complete the rows of what a model adds by what of it is changed."""
+        whole = of_test(r.observation, whole)
         changes = [t for t in whole.terms if t.term.acts != "force"]
-        sampled = any(at_samples(t.term, t.shape) for t in changes)
-        if sampled or (changes and r.cycle_rows is None):
-            added[:] = r.project(model_force(r.observation, whole, resolved=False))
-        elif changes and r.cycle_rows is not None:
-            with np.errstate(over="ignore", invalid="ignore"):  # a joint that shakes itself apart
-                added += self._change(r, steady_part(whole)) @ r.cycle_rows
+        if not changes:
+            return
+        known = self._changed.setdefault(id(r), {})
+        key = tuple((t.coefficient, *_shape_key(t)) for t in whole.terms)
+        at_cycle = None if any(at_samples(t.term, t.shape) for t in changes) else r.cycle_rows
+        found = known.pop(key, None)
+        if found is None:
+            self._rows[id(r)] = r
+            if at_cycle is None:
+                found = r.project(model_force(r.observation, whole, resolved=False))
+            else:
+                with np.errstate(over="ignore", invalid="ignore"):  # a joint shakes itself apart
+                    found = np.asarray(self._change(r, steady_part(whole)) @ at_cycle)
+        _keep(known, key, found, most=_CHANGED)  # what was used last is forgotten last
+        added[:] = found if at_cycle is None else added + found
 
     def _change(self, r: RecordRows, steady: ForceModel) -> Array:
         """Return what a joint or a sensor changes: the force before it is evaluated once."""
         cycle = r.observation.cycle
         if cycle is None:
             raise ValueError("only a sine test has a cycle")
-        self._rows[id(r)] = r
         added = [t for t in steady.terms if t.term.acts == "force"]
         key = tuple((t.coefficient, *_shape_key(t)) for t in added)
         known = self._forces.setdefault(id(r), {})
         if key not in known:
-            total = np.zeros_like(cycle.displacement)
-            for t in added:
-                total += t.coefficient * self._on_cycle(r, t, cycle)
-            _keep(known, key, total, most=_FORCES)
-        return change_on_cycle(r.observation, steady, known[key])
+            _keep(known, key, self._sum(r, added, cycle), most=_FORCES)
+        total, still = known[key], at_rest(cycle)
 
-    def _on_cycle(self, r: RecordRows, fitted: FittedTerm, cycle: Motion) -> Array:
+        def force_of(moved: Motion) -> Array:
+            if moved is cycle:
+                return total
+            return self._sum(r, added, still) if moved is still else steady.added(moved)
+
+        return change_on_cycle(r.observation, steady, force_of)
+
+    def _sum(self, r: RecordRows, added: Sequence[FittedTerm], motion: Motion) -> Array:
+        """Return the sum of terms on a record's cycle, or on that at rest."""
+        total = np.zeros_like(motion.displacement)
+        for t in added:
+            total += t.coefficient * self._on_cycle(r, t, motion)
+        return total
+
+    def _on_cycle(self, r: RecordRows, fitted: FittedTerm, motion: Motion) -> Array:
         known = self._columns.setdefault(id(r), {})
-        key = _shape_key(fitted)
+        key = (motion is r.observation.cycle, *_shape_key(fitted))
         if key not in known:
             unit = ForceModel((FittedTerm(fitted.id, 1.0, fitted.shape),))
-            _keep(known, key, unit.added(cycle), most=_COLUMNS)
+            _keep(known, key, unit.added(motion), most=_COLUMNS)
         return known[key]
 
 

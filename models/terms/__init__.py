@@ -12,7 +12,7 @@ from pkgutil import iter_modules
 
 from models.checks import InputError, one_of
 from models.terms.own import read_term
-from models.terms.term import Parameter, Shape, Term, TermSource
+from models.terms.term import ForceOf, Parameter, Shape, Term, TermSource
 
 TERMS: dict[str, Term] = {
     term.id: term
@@ -113,6 +113,7 @@ def _same(one: Term, other: Term) -> bool:
 __all__ = [
     "CATALOGUE",
     "TERMS",
+    "ForceOf",
     "Parameter",
     "Shape",
     "Term",

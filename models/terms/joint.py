@@ -20,6 +20,8 @@ _SHORT = 8192  # samples of one cycle; longer periods of many cycles settle with
 _LEAST_INNER, _MOST_INNER = 4, 60
 _MOST_STEPS = 1_000_000  # of one pass: a stiffer joint is as stiff as they can follow
 _ADDED_MASS = 1e-3  # of what would make the whole force: a damper's own time can't be stepped
+_FORGETS = 7.0  # times e that what a joint began with decays over a cycle at least
+_LEAST_LOSS = 0.005  # that is enough for it, where it moves of its own many times a cycle
 _FAR = 15.0  # widths from a soft flank, where it is met or not
 _NEWTON = 2  # steps for the speed after friction
 _WIDE = 3.0  # ranges of reversal, beyond which friction is whole
@@ -89,12 +91,19 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
         fastest /= np.sqrt(1.0 - taken + taken / squeezed**2)
     inner = int(np.clip(np.ceil(fastest * motion.step / _STEP), 1, most))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
-    damping = 2.0 * joint.loss * np.sqrt(stiffness * mass)
+    loss = joint.loss
+    if joint.gap == 0.0 and motion.periodic:
+        cycle = natural * motion.step * x.size  # rad of the joint's own motion
+        loss = max(loss, min(_FORGETS / cycle, _LEAST_LOSS))
+    damping = 2.0 * loss * np.sqrt(stiffness * mass)
     passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
+    start = x.size - x.size // _LEAD if passes > 1 and not joint.refilled else 0
+    borne = min(max(float(rigid[start]), joint.lower), joint.upper)
+    bent = borne / stiffness if joint.gap == 0.0 else 0.0
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, spring, stiffness,
         damping, 0.5 * joint.gap, joint.soft, joint.lower, joint.upper, int(joint.refilled),
-        joint.lag, joint.half_load, joint.load_share, joint.load_side, passes,
+        joint.lag, joint.half_load, joint.load_share, joint.load_side, passes, start, bent,
     )
     return np.asarray(force + carried - rigid)
 
@@ -109,13 +118,15 @@ def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, spring: float, stiffness: float, damping: float, half: float,
     soft: float, lower: float, upper: float, refilled: int, lag: float, half_load: float,
-    taken: float, load_side: float, passes: int,
+    taken: float, load_side: float, passes: int, start: int, bent: float,
 ) -> Array:
-    """Return the force that the joint carries, (N,), mean over each sample's inner steps."""
+    """Return the force that the joint carries, (N,), mean over each sample's inner steps.
+
+    It begins at sample `start`, with the joint pressed in by `bent`.
+    """
     size = x.size
     result = np.empty(size)
-    start = size - size // _LEAD if passes > 1 and refilled == 0 else 0
-    position, speed, slipped = x[start], v[start], 0.0
+    position, speed, slipped = x[start] - bent, v[start], 0.0
     pace_limit = np.max(np.abs(v))
     h = step / inner
     brake = h * dry / mass

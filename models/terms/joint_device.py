@@ -65,6 +65,8 @@ _DEVICES: dict[tuple[int, int, bool], _Device] = {}
 """What was asked for last, by force and motion: the same devices are tried behind many joints."""
 _RESISTANCES: dict[int, tuple[ReferenceType[Motion], _Resistances]] = {}
 """Likewise by motion."""
+_AT_REST: dict[int, tuple[ReferenceType[Motion], Motion]] = {}
+"""Likewise."""
 
 
 def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> Array:
@@ -101,13 +103,27 @@ def _forget_oldest(known: dict[Any, Any]) -> None:
         known.pop(list(known)[0], None)  # threads may be here too
 
 
+def at_rest(motion: Motion) -> Motion:
+    """Return a motion of the same speeds that goes nowhere; the same one again where asked again.
+
+    What a force loses in it is its springs'.
+    """
+    known = _AT_REST.get(id(motion))
+    if known is not None and known[0]() is motion:
+        return known[1]
+    still = replace(motion, displacement=np.zeros_like(motion.displacement))
+    if still.displacement.size <= _CYCLE:
+        _forget_oldest(_AT_REST)
+        _AT_REST[id(motion)] = ref(motion), still
+    return still
+
+
 def _stiffness(force: Array, motion: Motion, force_of: ForceOf) -> float:
     x = motion.displacement
     added = unchanged(force_of)
     whole = force if added is force_of else added(motion)
-    at_rest = added(replace(motion, displacement=np.zeros_like(x)))
     place = x - x.mean()
-    slope = float((whole - at_rest) @ place) / max(float(place @ place), 1e-300)
+    slope = float((whole - added(at_rest(motion))) @ place) / max(float(place @ place), 1e-300)
     return slope if np.isfinite(slope) else 0.0
 
 
