@@ -88,8 +88,10 @@ def gap(
     device = measured.device
     first = model in FRACTIONAL and device is not None and not paper_values(model, device)
     chosen = model if first or model.startswith(_FIT) else named_model(model, device)
-    with working(f"Comparing {len(measured.records)} records"):
-        found = close_gap(measured, chosen, fixed=fixed, effects=named, seed=seed, jobs=jobs)
+    with working(f"Comparing {len(measured.records)} records") as tell:
+        found = close_gap(
+            measured, chosen, fixed=fixed, effects=named, seed=seed, jobs=jobs, tell=tell
+        )
     document = found.to_dict()
     if named is not None:
         document["effects"] = list(named)

@@ -6,7 +6,7 @@ import contextlib
 import io
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,13 +32,25 @@ def result_folder(verb: str, campaign: str | Path, out: Path | None) -> Path:
 
 
 @contextlib.contextmanager
-def working(text: str) -> Iterator[None]:
-    """Show `text` on a terminal's stderr while work runs; keep libraries off stdout."""
+def working(text: str) -> Iterator[Callable[[str], None]]:
+    """Show `text` on a terminal's stderr while work runs; keep libraries off stdout.
+
+    Yields
+    ------
+    callable
+        Shows how far the work is, beside `text`.
+    """
     with contextlib.ExitStack() as stack:
-        if sys.stderr.isatty():
-            stack.enter_context(Console(stderr=True).status(text))
+        status = Console(stderr=True).status(text) if sys.stderr.isatty() else None
+        if status is not None:
+            stack.enter_context(status)
         stack.enter_context(contextlib.redirect_stdout(io.StringIO()))
-        yield
+
+        def tell(so_far: str) -> None:
+            if status is not None:
+                status.update(f"{text}: {so_far}")
+
+        yield tell
 
 
 def deliver(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -50,6 +50,7 @@ def close_gap(
     effects: Sequence[str] | None = None,
     seed: int = 0,
     jobs: int = 1,
+    tell: Callable[[str], None] | None = None,
 ) -> Gap:
     """Find where model and measurement disagree, name what is missing, add it, judge.
 
@@ -69,6 +70,8 @@ def close_gap(
         Kept in the document; the search draws nothing at random.
     jobs : int
         Threads for reading the records.
+    tell : callable, optional
+        Is told in words what each round added: a search takes seconds to minutes.
 
     Returns
     -------
@@ -91,7 +94,7 @@ def close_gap(
         one_of("effect", name, known, where="effects")
     observations = observe_all(campaign.records, jobs)
     baseline = prepare_baseline(observations, model, fixed=fixed, device=campaign.device)
-    found = search(baseline, chosen)
+    found = search(baseline, chosen, tell=tell)
     return _answer(campaign, baseline, found, seed)
 
 

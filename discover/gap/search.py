@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -83,7 +83,13 @@ class Search:
         return self.rounds[-1].after if self.rounds else self.refitted
 
 
-def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUNDS) -> Search:
+def search(
+    baseline: Baseline,
+    effects: Sequence[str],
+    *,
+    most: int = MOST_ROUNDS,
+    tell: Callable[[str], None] | None = None,
+) -> Search:
     """Return the rounds of naming beside a baseline.
 
     Parameters
@@ -94,6 +100,8 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
         Ids of the catalogue that may be named.
     most : int
         Rounds at most.
+    tell : callable, optional
+        Is told in words what each round added.
     """
     rows = baseline.rows
     fitted = [r for r in rows if not r.observation.held_out]
@@ -124,6 +132,9 @@ def search(baseline: Baseline, effects: Sequence[str], *, most: int = MOST_ROUND
             doubt = doubt + share_of(added.effect) ** 2 * np.maximum(gained, 0.0)
             tried |= set(added.dropped)
             rounds.append(added)
+            if tell is not None:
+                gap = seen_gap(rows, added.stage)
+                tell(f"round {len(rounds)} added {added.effect}, gap {gap:.3g} %")
             continue
         names = [r.effect for r in rounds]
         better = corrected(rows, fitted, now, names, most=_MOST_MEMBERS - members)

@@ -5,7 +5,14 @@ import pytest
 
 from discover.gap.search import stage
 from discover.motion_fit import observe
-from discover.naming.fit import fit_model, free_parameters, kind_of
+from discover.naming.fit import (
+    fit_model,
+    free_parameters,
+    kind_of,
+    value_of,
+    with_values,
+)
+from discover.naming.forces import model_force
 from discover.naming.restart import best_range
 from discover.naming.rows import record_rows
 from discover.naming.unit_rows import UnitRows
@@ -158,6 +165,34 @@ def test_an_order_keeps_off_the_whole_ones_beside_it(start):
     held = [p for p in fit.parameters if p.shape is None]
     linear = fit_model(rows_of(law), fit.model, held)
     assert fit.chi2 == pytest.approx(linear.chi2, rel=1e-3)
+
+
+@pytest.mark.parametrize("sensor", [
+    ("time-delay", 8e-4),
+    ("sensor-gain", 0.12, {"filter_time": 0.004}),
+    ("sensor-gain", 0.12),
+    ("sensor-clipping", 0.9, {"limit": 30.0}),
+])
+def test_tangents_of_what_a_sensor_reads_are_those_of_the_whole_model(sensor):
+    """Whether a sensor passes on sums or not: against differences of the model's own force."""
+    rows = rows_of(device)[1::3]
+    start = model(
+        ("inertia", 110.0), ("viscous-damping", 700.0), ("stiffness", 900.0),
+        ("power-law-damping", 60.0, {"exponent": 1.6}), sensor,
+    )
+    free = free_parameters(start)
+    fit = fit_model(rows, start, free, iterations=0)
+    for parameter, tangent in zip(free, fit.tangents, strict=True):
+        value = value_of(start, parameter)
+        above, below = (
+            np.concatenate([
+                r.project(model_force(r.observation, with_values(start, [parameter], [moved])))
+                for r in rows
+            ])
+            for moved in (1.0005 * value, 0.9995 * value)
+        )
+        exact = (above - below) / (1e-3 * value)
+        assert np.linalg.norm(tangent - exact) < 0.01 * np.linalg.norm(exact), parameter
 
 
 def test_an_order_alone_may_be_nearly_two():

@@ -41,6 +41,17 @@ def test_a_spring_before_a_linear_device_has_its_transfer_function(frequency, lo
     assert np.std(found - exact) < 4e-4 * np.std(exact)
 
 
+@pytest.mark.parametrize("load_share", [0.0, -0.3])
+def test_a_slow_test_does_not_ring_behind_an_undamped_mount(load_share):
+    """Its own motion, seven hundred times as fast and lossless, is none of the steady state."""
+    given = motion(0.2)
+    omega = 2.0 * np.pi * 150.0
+    force = MASS * given.acceleration
+    mount = Joint(MASS * omega**2, 0.0, half_load=100.0, load_share=load_share)
+    found = through_joint(force, given, mount, device_of(force, given))
+    assert np.abs(found - force).max() < 2e-3 * np.abs(force).max()  # (0.2 / 150)^2 of it, exactly
+
+
 def test_what_is_known_of_one_device_is_not_said_of_another():
     """The same array is the same device; a changed one, or one asked about its spring, is not."""
     given = motion(1.0)
