@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.sparse import csr_array, diags_array
 
 from discover.motion_fit import Observation, real_rows
@@ -26,6 +27,7 @@ _MODULATED = 3
 _MEAN_AT = 0.3  # of a line, where the spectrum of drifting noise is what moves the mean
 _SLOW_DOUBT = 2.0  # of the noise's variance below the test's frequency: it is extrapolated
 _MAINS = (50.0, 60.0)
+_NEW = 1e-3  # of the greatest column, that each has to add to those before it
 
 
 @dataclass(frozen=True)
@@ -152,8 +154,7 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
         lowest = harmonics[:, 1 : 1 + 2 * min(_MODULATED, count)]
         parts += [lowest * slow[:, [order]] for order in (0, 1)]
         lines += 2 * [float(k // 2 + 1) for k in range(lowest.shape[1])]
-    basis, triangle = np.linalg.qr(np.concatenate(parts, axis=1))
-    basis *= np.sign(np.diagonal(triangle))
+    basis = _orthonormal(np.concatenate(parts, axis=1))
     order = np.concatenate(([0.0], np.repeat(np.arange(1.0, count + 1), 2), lines)).astype(int)
     if observation.noise is not None:
         wanted = order * frequency
@@ -177,6 +178,22 @@ def _sine_rows(observation: Observation, held: tuple[FittedTerm, ...]) -> Record
         observation, project(observation.measured), project, 8.0, held,
         _cycle_rows(observation, whitened), whitened, 2 * count + 1,
     )
+
+
+def _orthonormal(columns: Array) -> Array:
+    """Return columns (N, K) made orthonormal one after the other, each along what is new of it.
+
+    By Cholesky's factor of their products, whose round-off is that of their condition squared.
+    """
+    try:
+        triangle = np.linalg.cholesky(columns.T @ columns).T
+    except np.linalg.LinAlgError:
+        triangle = np.zeros((1, 1))
+    new = np.diagonal(triangle)
+    if new.min() > _NEW * new.max():
+        return np.asarray(solve_triangular(triangle, columns.T, trans="T", check_finite=False).T)
+    basis, triangle = np.linalg.qr(columns)
+    return np.asarray(basis * np.sign(np.diagonal(triangle)))
 
 
 def _cycle_rows(observation: Observation, whitened: Array) -> Array | None:
