@@ -42,6 +42,11 @@ class Baseline:
     """Ids of its last terms, where an earlier search added them."""
 
     @property
+    def fitted_rows(self) -> tuple[RecordRows, ...]:
+        """Rows of the records that are not held out."""
+        return tuple(r for r in self.rows if not r.observation.held_out)
+
+    @property
     def terms(self) -> tuple[FittedTerm, ...]:
         """All terms, of all bands."""
         if isinstance(self.whole, ForceModel):

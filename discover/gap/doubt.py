@@ -56,7 +56,7 @@ def doubt_of_added(baseline: Baseline, fit: ModelFit) -> Doubt:
     fit : ModelFit
         Its model, fitted to the records that are not held out.
     """
-    rows = [r for r in baseline.rows if not r.observation.held_out]
+    rows: Sequence[RecordRows] = baseline.fitted_rows
     by_record, square = np.zeros(len(rows)), 0.0
     if not any(share_of(effect) for effect in baseline.added):
         return Doubt(by_record)

@@ -22,6 +22,7 @@ from discover.gap.result import (
 )
 from discover.gap.search import Round, Search, search
 from discover.gap.stages import Stage, seen_gap
+from discover.gap.standard_error import standard_errors
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import observe_all
 from discover.naming.contest import Contest
@@ -182,7 +183,7 @@ def _named(baseline: Baseline, entry: Round) -> NamedEffect:
     fit, before, after = entry.stage.fit, entry.before, entry.after
     index = next(i for i, t in enumerate(fit.model.terms) if t.id == entry.effect)
     term = fit.model.terms[index]
-    error = _standard_errors(fit).get(index, 0.0)
+    error = standard_errors(baseline.fitted_rows, fit).get(index, 0.0)
     probability = float(entry.contest.probabilities[entry.effect])
     alternatives = _stated(entry.contest, entry.effect)
     return NamedEffect(
@@ -205,18 +206,8 @@ def _named(baseline: Baseline, entry: Round) -> NamedEffect:
     )
 
 
-def _standard_errors(fit: ModelFit) -> dict[int, float]:
-    """Return each fitted coefficient's standard error, raised where more than noise is left."""
-    raised = max(fit.chi2 / max(fit.residual.size - len(fit.parameters), 1), 1.0)
-    return {
-        parameter.term: float(np.sqrt(max(fit.covariance[k, k], 0.0) * raised))
-        for k, parameter in enumerate(fit.parameters)
-        if parameter.shape is None
-    }
-
-
 def _mended_terms(baseline: Baseline, fit: ModelFit) -> tuple[MendedTerm, ...]:
-    errors = _standard_errors(fit)
+    errors = standard_errors(baseline.fitted_rows, fit)
     result = [MendedTerm(t, None) for t in (baseline.terms if baseline.fixed else ())]
     for index, term in enumerate(fit.model.terms):
         half = 1.96 * errors.get(index, 0.0)
@@ -253,9 +244,8 @@ def _figures(
         )
         for r, was, now in zip(rows, found.baseline.misfits, found.final.misfits, strict=True)
     )
-    fitted = [r for r in rows if not r.observation.held_out]
     shapes = tuple(
-        shape_of(fitted, entry, i, _relative(named))
+        shape_of(baseline.fitted_rows, entry, i, _relative(named))
         for i, (entry, named) in enumerate(zip(found.rounds, rounds, strict=True))
     )
     return GapFigureData(drawn, shapes, surface(rows, before))

@@ -104,7 +104,7 @@ def search(
         Is told in words what each round added.
     """
     rows = baseline.rows
-    fitted = [r for r in rows if not r.observation.held_out]
+    fitted = baseline.fitted_rows
     fixed = fit_model(fitted, baseline.model, ())
     start = stage(rows, fixed)
     fit = fit_model(fitted, baseline.model, free_parameters(baseline.model))

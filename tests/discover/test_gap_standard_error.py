@@ -1,0 +1,43 @@
+"""Intervals of coefficients hold what they claim to, where only noise is left and where more is."""
+
+import numpy as np
+import pytest
+
+from discover.gap.standard_error import standard_errors
+from discover.motion_fit import observe_all
+from discover.naming.fit import fit_model, free_parameters
+from discover.naming.rows import record_rows
+from models.constitutive import FittedTerm, ForceModel
+from tests.discover.gap_data import campaign, device
+
+MODEL = ForceModel((
+    FittedTerm("inertia", 100.0),
+    FittedTerm("viscous-damping", 700.0),
+    FittedTerm("coulomb-friction", 20.0, {"transition_speed": 1e-3}),
+))
+TRUE = (120.0, 800.0)
+
+
+def errors_over_claimed(seed, spread):
+    """Return the coefficients' errors over the standard errors, friction differing by test."""
+    rng = np.random.default_rng(500 + seed)
+
+    def law(t, x, v, a):
+        friction = 30.0 * (1.0 + spread * rng.standard_normal())
+        return device(t, x, v, a) + friction * np.tanh(v / 1e-3)
+
+    rows = [record_rows(o) for o in observe_all(campaign(law, seed=seed).records, 1)]
+    fit = fit_model(rows, MODEL, free_parameters(MODEL))
+    claimed = standard_errors(rows, fit)
+    found = [t.coefficient for t in fit.model.terms]
+    return [(found[k] - true) / claimed[k] for k, true in enumerate(TRUE)]
+
+
+@pytest.mark.parametrize("spread", [0.0, 0.3])
+def test_intervals_hold_the_truth_as_often_as_they_say(spread):
+    """95 % of intervals: with friction of another size in every test a quarter of them had."""
+    seeds = range(20)
+    over = np.array([errors_over_claimed(seed, spread) for seed in seeds])
+    held = np.mean(np.abs(over) < 1.96, axis=0)
+    assert np.all(held >= 0.75)  # 15 of 20: fewer come once in 3,000 such sets of 95 %
+    assert np.all(np.median(np.abs(over), axis=0) > 0.1)  # nor are they wide for nothing
