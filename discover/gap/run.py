@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from discover.figure_data import GapFigureData
 from discover.gap.accuracy import pooled
@@ -93,10 +94,11 @@ def close_gap(
     chosen = known if effects is None else tuple(effects)
     for name in chosen:
         one_of("effect", name, known, where="effects")
-    observations = observe_all(campaign.records, jobs)
-    baseline = prepare_baseline(observations, model, fixed=fixed, device=campaign.device)
-    found = search(baseline, chosen, tell=tell)
-    return _answer(campaign, baseline, found, seed)
+    with threadpool_limits(1):  # its matrices are small: more threads take longer
+        observations = observe_all(campaign.records, jobs)
+        baseline = prepare_baseline(observations, model, fixed=fixed, device=campaign.device)
+        found = search(baseline, chosen, tell=tell)
+        return _answer(campaign, baseline, found, seed)
 
 
 def _unseen(stage: Stage) -> float | None:

@@ -34,6 +34,7 @@ _MOST_MEMBERS = 4  # that are added to the curves of effects
 _BEYOND = 1.5  # times the noise floor, from which a gap is more than noise
 _FEWEST = 20.0  # of chi-square, that an effect has to explain
 _SEVERAL = 4  # records, of which one that stands out may have more noise than was found
+_SURE = 0.99  # that it is no entry's, where nothing will be added
 _AGAIN = 8  # effects, that are weighed again where friction's curve is known better
 _OF_OTHERS = 60.0  # of chi-square, that an effect has to explain in the others then
 
@@ -122,7 +123,8 @@ def search(
         present = {t.id for t in now.fit.model.terms}
         open_effects = [e for e in effects if e not in present and e not in tried]
         if weighed is None:
-            weighed = _weighed(fitted, now.fit, open_effects, doubt, columns)
+            settled = _within(rows, now, rounds, given)
+            weighed = _weighed(fitted, now.fit, open_effects, doubt, columns, settled=settled)
         left = _Open(open_effects, rounds, len(rounds) < most, curves, deep, given, columns)
         found = _next(rows, fitted, now, left, *weighed)
         if found.added is not None:
@@ -192,9 +194,8 @@ def _next(
     fits: dict[str, ModelFit],
 ) -> _Next:
     """Return the next round: the contest, and the effect that it names, added."""
-    done = [(r.effect, r.before, r.after) for r in left.rounds]
-    doubtful = bool(done) or left.given.square > 0.0
-    little = doubtful and within_doubt(rows, now, left.given, done)
+    doubtful = bool(left.rounds) or left.given.square > 0.0
+    little = _within(rows, now, left.rounds, left.given)
     if contest.ranked[0][0] != AGREES and not _beyond(rows, now):
         little = little or _one_stands_out(fitted, now, contest, fits)
     if left.deep and not little:
@@ -215,6 +216,14 @@ def _next(
             second = _tried(rows, fitted, now, left, paired, None, other)
             tried = tried if second.added is None else second
     return tried
+
+
+def _within(
+    rows: Sequence[RecordRows], now: Stage, rounds: Sequence[Round], given: Doubt
+) -> bool:
+    """Tell whether no more is left than the shapes of what was added may be wrong by."""
+    done = [(r.effect, r.before, r.after) for r in rounds]
+    return (bool(done) or given.square > 0.0) and within_doubt(rows, now, given, done)
 
 
 def _again(
@@ -353,14 +362,19 @@ def _weighed(
     effects: Sequence[str],
     doubt: Array,
     columns: CandidateColumns,
+    *,
+    settled: bool = False,
 ) -> tuple[Contest, dict[str, ModelFit]]:
     """Return the contest beside a fit, and the fits of those that lead.
 
     `doubt` is what of each record's chi-square the shapes of what was added may be wrong by.
+    `settled`: nothing will be added, so what hardly anything explains is not looked at closer.
     """
     beyond = misfits(rows, fit) - np.array([r.target.size for r in rows])
     tolerated = float(np.sum(np.minimum(doubt, np.maximum(beyond, 0.0))))
     contest = run_contest(rows, fit, effects, tolerated=tolerated, columns=columns)
+    if settled and contest.probabilities[UNKNOWN] > _SURE:
+        return contest, {}
     return refine(rows, fit, contest, effects)
 
 

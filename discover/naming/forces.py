@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from weakref import ReferenceType, ref
 
 import numpy as np
 
@@ -21,6 +23,7 @@ _BEYOND = 4  # samples beyond a delay, that a spline needs
 _RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant shows on it
 _REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ
 _MOST_MISSING = 16  # samples in a row
+_MOST_KNOWN = 128  # cycles, of which the last force is remembered
 _EARLIER = np.polynomial.laguerre.laggauss(6)  # moments in time constants, and their weights
 
 
@@ -190,8 +193,25 @@ def _force(observation: Observation, model: ForceModel) -> Array:
     if cycle is None or not any(needs_cycle(t.term, t.shape) for t in model.terms):
         return model.force(motion)
     plain = ForceModel(tuple(t for t in model.terms if not needs_cycle(t.term, t.shape)))
-    change = steady_part(model).force(cycle) - steady_part(plain).force(cycle)
-    return plain.force(motion) + _from_cycle(observation, change)
+    return plain.force(motion) + _from_cycle(observation, _remembered(cycle, model, plain))
+
+
+_KNOWN: dict[int, tuple[ReferenceType[Motion], Hashable, Array]] = {}
+"""What was evaluated last on a cycle: at other times of it, as behind a delay, it is the same."""
+
+
+def _remembered(cycle: Motion, model: ForceModel, plain: ForceModel) -> Array:
+    """Return what a model's terms with memory add to the plain ones over a cycle, (G,) N."""
+    steady = steady_part(model)
+    key = tuple((t.term, t.coefficient, *t.shape.items()) for t in steady.terms)
+    known = _KNOWN.get(id(cycle))
+    if known is not None and known[0]() is cycle and known[1] == key:
+        return known[2]
+    change = steady.force(cycle) - steady_part(plain).force(cycle)
+    if len(_KNOWN) >= _MOST_KNOWN:
+        _KNOWN.pop(next(iter(list(_KNOWN))), None)  # threads may be here too
+    _KNOWN[id(cycle)] = ref(cycle), key, change
+    return change
 
 
 def _at(observation: Observation, time: Array) -> Observation:

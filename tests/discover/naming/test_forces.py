@@ -71,3 +71,13 @@ def test_a_gain_that_changed_between_two_tests_is_named_with_the_test():
     assert found.to_dict()["rounds"][0]["parameters"]["from_test"] == 3.0
     assert only.coefficient == pytest.approx(0.15, abs=0.003)
     assert found.final_held_out_gap_percent < 1.2 * found.noise_percent
+
+
+def test_what_is_remembered_of_a_cycle_is_not_said_of_another_model():
+    """Forces with memory, one after the other on the same test, are those on a test of its own."""
+    record = campaign(device, noise=0.0).records[0]
+    same = observe(record)
+    for size, reach, delay in ((50.0, 1e-4, 0.0), (90.0, 1e-4, 2e-3), (90.0, 3e-4, 2e-3)):
+        springs = FittedTerm("hysteresis", size, {"yield_displacement": reach})
+        late = ForceModel((*MODEL.terms, springs, FittedTerm("time-delay", delay)))
+        np.testing.assert_array_equal(model_force(same, late), model_force(observe(record), late))
