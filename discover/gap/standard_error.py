@@ -11,16 +11,16 @@ from discover.naming.rows import RecordRows
 from models.checks import Array
 
 _NOISE = 1.2  # of chi-square a row, up to which only noise is left
-_FEWEST = 4  # records, that can tell how much they differ
+_FEWEST = 4  # records or windows, that can tell how much they differ
 
 
 def standard_errors(rows: Sequence[RecordRows], fit: ModelFit) -> dict[int, float]:
     """Return each fitted coefficient's standard error, by its term's index, in its unit.
 
     Where more than noise is left, a wrong shape shows alike in all lines of a record and not anew
-    in each: the error is then the jackknife's over whole records (Efron and Stein 1981; here along
-    the fit's tangents), at least the noise's. From too few records it is the noise's, raised by
-    what is left.
+    in each: the error is then the jackknife's over whole records, or of few records over their
+    windows (Efron and Stein 1981; here along the fit's tangents), at least the noise's. From too
+    few of either it is the noise's, raised by what is left.
 
     Parameters
     ----------
@@ -32,10 +32,11 @@ def standard_errors(rows: Sequence[RecordRows], fit: ModelFit) -> dict[int, floa
     free = fit.residual.size - len(fit.parameters)
     raised = max(fit.chi2 / max(free, 1), 1.0)
     variance = np.diagonal(fit.covariance)
-    if raised <= _NOISE or len(rows) < _FEWEST:
+    sizes = _parts(rows)
+    if raised <= _NOISE or len(sizes) < _FEWEST:
         variance = raised * variance
     else:
-        variance = np.maximum(variance, _jackknife(rows, fit))
+        variance = np.maximum(variance, _jackknife(sizes, fit))
     return {
         p.term: float(np.sqrt(max(value, 0.0)))
         for p, value in zip(fit.parameters, variance, strict=True)
@@ -43,13 +44,21 @@ def standard_errors(rows: Sequence[RecordRows], fit: ModelFit) -> dict[int, floa
     }
 
 
-def _jackknife(rows: Sequence[RecordRows], fit: ModelFit) -> Array:
-    """Return the variances (P,) that leaving out each record in turn tells."""
-    ends = np.cumsum([r.target.size for r in rows])[:-1]
+def _parts(rows: Sequence[RecordRows]) -> list[int]:
+    """Return how many rows belong together: a record's, or of few records a window's."""
+    sizes = [r.target.size for r in rows]
+    if len(rows) < _FEWEST and all(r.cycle_rows is None for r in rows):
+        sizes = [2 * w.omega.size for r in rows for w in r.observation.windows]
+    return sizes
+
+
+def _jackknife(sizes: Sequence[int], fit: ModelFit) -> Array:
+    """Return the variances (P,) that leaving out each part of the rows in turn tells."""
+    ends = np.cumsum(sizes)[:-1]
     tangents = np.split(fit.tangents, ends, axis=1)
     left = np.split(fit.residual, ends)
     whole = fit.tangents @ fit.tangents.T
     moved = np.stack([
         inverse(whole - t @ t.T) @ (t @ part) for t, part in zip(tangents, left, strict=True)
     ])
-    return np.asarray((len(rows) - 1.0) * np.mean(moved**2, axis=0))
+    return np.asarray((len(sizes) - 1.0) * np.mean(moved**2, axis=0))
