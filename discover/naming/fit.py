@@ -143,20 +143,14 @@ def _tangents(
     adding = all(adds_up(t.term, t.shape) for t in sensors)
     through = any(is_joint(t.id) for t in terms)
     rough = rough and adding
-
-    unchanged = linear or (rough and all(t.id == DELAY for t in sensors))
-
-    def alone(fitted: FittedTerm, *, unchanged: bool) -> Array:
-        if unchanged:
-            return units.of_all(rows, fitted)
-        return units.of_sensed(rows, fitted, model)
-
+    as_added = rough and all(t.id == DELAY for t in sensors)
     for index, parameter in enumerate(parameters):
         fitted = model.terms[parameter.term]
         value = value_of(model, parameter)
         adds = fitted.term.acts == "force" and (linear or rough or (adding and not through))
         if parameter.shape is None and adds:
-            result[index] = alone(fitted, unchanged=unchanged)
+            of = units.of_all(rows, fitted) if as_added else units.of_sensed(rows, fitted, model)
+            result[index] = of
             continue
         step = (_STEP if linear else _JOINT_STEP) * abs(value) or 1e-6
         if parameter.shape in ("order", "exponent"):
@@ -166,10 +160,8 @@ def _tangents(
             result[index] = _in_one_test(rows, units, fitted, other, at) / step
             continue
         if adds and not through:
-            here, moved = (
-                alone(t, unchanged=linear) for t in (fitted, other.terms[parameter.term])
-            )
-            change = fitted.coefficient * (moved - here)
+            moved = units.of_sensed(rows, other.terms[parameter.term], model)
+            change = fitted.coefficient * (moved - units.of_sensed(rows, fitted, model))
         else:
             change = units.of_model(rows, other) - at
         result[index] = np.where(np.isfinite(change), change, 0.0) / step

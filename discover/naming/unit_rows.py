@@ -108,6 +108,8 @@ class UnitRows:
 
         They are the term's share of the whole where every sensor `adds_up`.
         """
+        if not any(is_sensor(t.term) for r in rows for t in (*r.held, *model.terms)):
+            return self.of_all(rows, fitted)
         unit = FittedTerm(fitted.id, 1.0, fitted.shape)
         parts = []
         for r in rows:
