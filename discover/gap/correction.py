@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.gap.accuracy import pooled
+from discover.gap.reversing import WIDEST
 from discover.gap.stages import Stage, left_out, record_misfit, stage
 from discover.naming.candidates import Part, Variant, variants
 from discover.naming.columns import candidate_columns, without_span
@@ -21,7 +22,7 @@ from discover.naming.forces import DELAY, has_joint, is_joint
 from discover.naming.rows import RecordRows
 from discover.naming.scales import scales_of
 from models.constitutive import FittedTerm, ForceModel
-from models.terms import TERMS
+from models.terms import TERMS, Shape
 
 _POWERS = {
     "asymmetric-damping": (0.5, 1.0, 1.5, 2.0, 3.0),
@@ -126,10 +127,19 @@ def with_member(
     if gain[place] <= 0.0:
         return None
     chosen = members[place]
+    fastest = max(r.sizes["speed"] for r in rows)
     term = FittedTerm(chosen.id, float(along[place] / power[place]), chosen.shape)
     model = ForceModel((*fit.model.terms, term), fit.model.name)
     steps = _STEPS_BESIDE_JOINT if has_joint(model) else ITERATIONS
-    return chosen.id, fit_model(rows, model, free_parameters(model), iterations=steps)
+    found = fit_model(rows, model, free_parameters(model), iterations=steps)
+    if any(_resists(t.shape, fastest) for t in found.model.terms[len(fit.model.terms) :]):
+        return None
+    return chosen.id, found
+
+
+def _resists(shape: Shape, fastest: float) -> bool:
+    """Tell whether friction's reversal is so wide that it is a resistance's, and no seal's."""
+    return shape.get("transition_speed", 0.0) > WIDEST * fastest
 
 
 def _may_pull(model: ForceModel, member: Part) -> bool:
@@ -153,7 +163,10 @@ def _family(rows: Sequence[RecordRows], model: ForceModel, effect: str) -> list[
         parts = []
     scales = scales_of([r.observation for r in rows])
     if effect not in _POWERS or own[0].get("width", 0.0) > 0.0:
-        parts += [p for v in variants(effect, scales) for p in v.parts]
+        parts += [
+            p for v in variants(effect, scales) for p in v.parts
+            if not _resists(p.shape, scales.speed)
+        ]
     unique: dict[tuple[tuple[str, float], ...], Part] = {}
     for p in parts:
         shape = TERMS[effect].shape(p.shape)

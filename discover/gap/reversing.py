@@ -25,7 +25,7 @@ _BY_A_KNEE = 0.6  # of what is left above the noise, to which a knee has to brin
 _OTHER = (4.0, 0.25)  # times the range of reversal, over which a part of it may reverse instead
 _OTHER_SHARE = 0.3
 _FARTHEST = 20.0  # times one part's range, to which the other's may reach: beyond it, a resistance
-_WIDEST = 0.05  # of the greatest speed, likewise
+WIDEST = 0.05  # of the greatest speed, likewise
 
 
 def reversing_as_sampled(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
@@ -111,7 +111,7 @@ def _reverses(rows: Sequence[RecordRows], fit: ModelFit, place: int) -> bool:
     if curve["other_share"] == 0.0:
         return True
     less, more = sorted((curve["transition_speed"], curve["other_speed"]))
-    return more < min(_FARTHEST * less, _WIDEST * max(r.sizes["speed"] for r in rows))
+    return more < min(_FARTHEST * less, WIDEST * max(r.sizes["speed"] for r in rows))
 
 
 def _as_sampled(

@@ -158,13 +158,14 @@ def run_contest(
     size = fit.residual.size
     dof = size - len(fit.parameters)
     noise = dof + _NOISE_DEVIATIONS * np.sqrt(2.0 * dof) * 0.5 + _NOISE_UNCERTAINTY * dof
-    noise += tolerated
     columns = CandidateColumns(rows) if columns is None else columns
     raw = columns.of(fit.model, chosen)
     tangents = np.concatenate([fit.tangents, reversal_doubt(rows, fit.model)])
     freed = without_span(raw, tangents)
     target = without_span(fit.residual[None], tangents)[0]
     chi2 = float(target @ target)
+    tolerated *= min(chi2 / max(fit.chi2, 1e-300), 1.0)  # the curve's doubt is out of both
+    noise += tolerated
 
     def evidence(chi2: float, parameters: int) -> float:
         misfit = cost(chi2 - noise, informative, tolerated)
@@ -337,7 +338,7 @@ def reweighed(
     """
     informative = sum(r.informative for r in rows)
     refitted = {
-        e.effects[0]: min(_left(rows, fits[e.effects[0]]), e.chi2)
+        e.effects[0]: _really_left(rows, fits[e.effects[0]], e)
         for e in contest.entries
         if len(e.effects) == 1 and e.effects[0] in fits
     }
@@ -361,6 +362,15 @@ def reweighed(
     usual = usual_left(rows, contest.tolerated)
     chances = probabilities_of(entries, effects, contest.excess, informative, usual)
     return replace(contest, entries=tuple(entries), probabilities=chances)
+
+
+def _really_left(rows: Sequence[RecordRows], fit: ModelFit, entry: Entry) -> float:
+    """Return the chi-square of an effect's fit.
+
+    A straight line to a changed input or output may promise more than a change of its size gives.
+    """
+    left = _left(rows, fit)
+    return min(left, entry.chi2) if TERMS[entry.effects[0]].acts == "force" else left
 
 
 def _left(rows: Sequence[RecordRows], fit: ModelFit) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from discover.naming.contest import Contest, reweighed
 from discover.naming.evidence import AGREES, Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters, telling
-from discover.naming.forces import MOST_FILTERED, behind_filter, has_joint, is_joint
+from discover.naming.forces import MOST_FILTERED, behind_filter, has_joint, is_joint, is_sensor
 from discover.naming.restart import best_range
 from discover.naming.reversal import with_reversal
 from discover.naming.rows import RecordRows
@@ -30,6 +30,7 @@ _SPRING = 8.0  # times the play, that its flanks give under the greatest force
 _BEARS = 0.25  # of the stiffness under the greatest force, that a play has in its middle at most
 _FAR = 30.0  # widths from a soft flank, where it is linear
 _WITHIN = 60.0  # nats behind the best that adds one effect, within which another is refined
+_SENSOR_WITHIN = 120.0  # likewise a sensor's: its straight line is off by its size squared
 _SURE = 0.9  # of agreement: no shape changes that
 _HOPELESS = 0.95  # of the misfit, that an added force leaves: no shape near it leaves much less
 
@@ -77,53 +78,67 @@ def refine(
     only : collection of str, optional
         Ids that may be refined.
     """
-    singles = [e for e in contest.entries if len(e.effects) == 1]
-    if not singles or contest.probabilities[AGREES] > _SURE:
+    if contest.probabilities[AGREES] > _SURE:
         return contest, {}
-    leading = [
-        e
-        for e in singles[:_LEADING]
-        if e.log_evidence > singles[0].log_evidence - _WITHIN
-        and (only is None or e.effects[0] in only)
-        and not _hopeless(e, contest)
-    ]
     units = UnitRows()
     frozen = _Frozen.of(rows, fit, units)
     fits: dict[str, ModelFit] = {}
+    seen: set[str] = set()
     passed_over: list[str] = []
     instead: dict[str, Entry] = {}
-    for place, entry in enumerate(leading):
-        name = entry.effects[0]
-        starts = contest.starts[name][: _KINDS[min(place, len(_KINDS) - 1)]]
-        ended = _ENDED if place == 0 and TERMS[name].acts == "force" else 1
-        found = _best(rows, fit, starts, ended, units, frozen)
-        if at_most_filtered(found.model.terms[len(fit.model.terms) :]):
-            others = [s for s in contest.starts[name] if not _filtered(s)][:1]
-            if not others:
+    weighed = contest
+    while leading := [e for e in _leading(weighed, only) if e.effects[0] not in seen]:
+        # What the first promised in a straight line it may not keep: then others come near.
+        for entry in leading:
+            name = entry.effects[0]
+            starts = contest.starts[name][: _KINDS[min(len(seen), len(_KINDS) - 1)]]
+            ended = _ENDED if not seen and TERMS[name].acts == "force" else 1
+            seen.add(name)
+            found = _best(rows, fit, starts, ended, units, frozen)
+            if at_most_filtered(found.model.terms[len(fit.model.terms) :]):
+                others = [s for s in contest.starts[name] if not _filtered(s)][:1]
+                if not others:
+                    passed_over.append(name)
+                    continue
+                instead[name] = others[0]
+                found = _best(rows, fit, others, 1, units, frozen)
+            if not np.isfinite(found.chi2):
+                continue
+            own = found.model.terms[len(fit.model.terms) :]
+            if TERMS[name].nonnegative and min(t.coefficient for t in own) <= 0.0:
+                continue
+            if name == "sensor-gain" and not has_joint(fit.model):
+                found = best_range(rows, found)
+            if is_a_spring(rows, found.model):
                 passed_over.append(name)
                 continue
-            instead[name] = others[0]
-            found = _best(rows, fit, others, 1, units, frozen)
-        if not np.isfinite(found.chi2):
-            continue
-        own = found.model.terms[len(fit.model.terms) :]
-        if TERMS[name].nonnegative and min(t.coefficient for t in own) <= 0.0:
-            continue
-        if name == "sensor-gain" and not has_joint(fit.model):
-            found = best_range(rows, found)
-        if is_a_spring(rows, found.model):
-            passed_over.append(name)
-            continue
-        fits[name] = found
-    contest = replace(
-        contest,
-        entries=tuple(
-            instead.get(e.effects[0], e) if len(e.effects) == 1 else e
-            for e in contest.entries
-            if not set(passed_over) & set(e.effects)
-        ),
-    )
-    return reweighed(rows, contest, fit, fits, effects), fits
+            fits[name] = found
+        weighed = replace(
+            contest,
+            entries=tuple(
+                instead.get(e.effects[0], e) if len(e.effects) == 1 else e
+                for e in contest.entries
+                if not set(passed_over) & set(e.effects)
+            ),
+        )
+        weighed = reweighed(rows, weighed, fit, fits, effects)
+    return weighed, fits
+
+
+def _leading(contest: Contest, only: Collection[str] | None) -> list[Entry]:
+    """Return the best entries that add one effect, near enough to the best of them."""
+    singles = [e for e in contest.entries if len(e.effects) == 1][:_LEADING]
+    return [
+        e
+        for e in singles
+        if e.log_evidence > singles[0].log_evidence - _within(e.effects[0])
+        and (only is None or e.effects[0] in only)
+        and not _hopeless(e, contest)
+    ]
+
+
+def _within(name: str) -> float:
+    return _SENSOR_WITHIN if is_sensor(TERMS[name]) else _WITHIN
 
 
 def _best(
