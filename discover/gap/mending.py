@@ -12,7 +12,7 @@ from discover.naming.evidence import Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.forces import has_impacts, has_joint, is_joint, of_each_test
 from discover.naming.polish import polished
-from discover.naming.refine import at_most_filtered, extended
+from discover.naming.refine import at_most_filtered, extended, pulls
 from discover.naming.restart import best_range, restarted
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
@@ -101,5 +101,4 @@ def without_superfluous(
 def impossible(model: ForceModel, name: str) -> bool:
     """Tell whether some part of an effect has a sign or a size that it can't have."""
     own = [t for t in model.terms if t.id == name]
-    pulls = any(t.term.nonnegative and t.coefficient <= 0.0 for t in own)
-    return pulls or at_most_filtered(own)
+    return pulls(own) or at_most_filtered(own)

@@ -102,10 +102,7 @@ def refine(
                     continue
                 instead[name] = others[0]
                 found = _best(rows, fit, others, 1, units, frozen)
-            if not np.isfinite(found.chi2):
-                continue
-            own = found.model.terms[len(fit.model.terms) :]
-            if TERMS[name].nonnegative and min(t.coefficient for t in own) <= 0.0:
+            if not np.isfinite(found.chi2) or pulls(found.model.terms[len(fit.model.terms) :]):
                 continue
             if name == "sensor-gain" and not has_joint(fit.model):
                 found = best_range(rows, found)
@@ -123,6 +120,11 @@ def refine(
         )
         weighed = reweighed(rows, weighed, fit, fits, effects)
     return weighed, fits
+
+
+def pulls(terms: Sequence[FittedTerm]) -> bool:
+    """Tell whether some term has a sign that it can't have."""
+    return any(t.term.nonnegative and t.coefficient <= 0.0 for t in terms)
 
 
 def _leading(contest: Contest, only: Collection[str] | None) -> list[Entry]:
