@@ -75,8 +75,7 @@ class Search:
     last: Contest
     """That ended it."""
     rejected: str | None = None
-    """An effect that would have lowered the misfit in its weights, but not the gap in N, or not
-    that of records that are left out."""
+    """An effect that lowered the misfit in its weights, not the gap in N or of records left out."""
 
     @property
     def final(self) -> Stage:
@@ -111,7 +110,7 @@ def search(
     fit = fit_model(fitted, baseline.model, free_parameters(baseline.model))
     moved = fixed.chi2 - fit.chi2 > _MOVED * fit.residual.size
     refitted = stage(rows, fit) if moved else start
-    first = refitted if moved else replace(start, fit=fit)
+    first = replace(refitted, fit=fit)
     rounds: list[Round] = []
     tried: set[str] = set()
     given = doubt_of_added(baseline, fit)
@@ -275,10 +274,9 @@ def _tried(
     earlier = [r.effect for r in left.rounds if r.effect in {t.id for t in fit.model.terms}]
     fit, dropped = without_superfluous(fitted, fit, earlier)
     after = stage(rows, fit)
+    judged = left.rounds and not of_each_test(fit.model, name)
     helps = _helps(rows, now, after) or _shows(rows, fitted, now, after)
-    if helps and left.rounds and not of_each_test(fit.model, name):
-        helps = _predicts(rows, now, after)
-    if not helps:
+    if not helps or (judged and not _predicts(rows, now, after)):
         refused = contest.without(name) if _beyond(rows, now) else contest.in_doubt(name)
         return _Next(refused, rejected=name)
     return _Next(contest, Round(name, contest, now, after, dropped))
@@ -306,7 +304,10 @@ def _predicts(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
         return True
     if pooled(after.unseen) <= (1.0 + _WORSE) * pooled(before.unseen):
         return True
-    return _by_record(after.unseen) < (1.0 - _CLEARLY) * _by_record(before.unseen)
+    # One record alone may show an earlier effect: left out, only chance predicts it.
+    pairs = zip(before.unseen, after.unseen, strict=True)
+    change = [np.log(max(now.percent, 1e-9) / max(was.percent, 1e-9)) for was, now in pairs]
+    return bool(np.mean(change) < np.log1p(-_CLEARLY))
 
 
 def _by_record(misfits: Sequence[Misfit]) -> float:

@@ -102,13 +102,14 @@ def refine(
                     continue
                 instead[name] = others[0]
                 found = _best(rows, fit, others, 1, units, frozen)
-            if not np.isfinite(found.chi2) or pulls(found.model.terms[len(fit.model.terms) :]):
+            if pulls(found.model.terms[len(fit.model.terms) :]):
+                found = _as_begun(rows, extended(fit.model, starts[0]), units)
+            impossible = pulls(found.model.terms[len(fit.model.terms) :])
+            if impossible or not np.isfinite(found.chi2) or is_a_spring(rows, found.model):
+                passed_over.append(name)
                 continue
             if name == "sensor-gain" and not has_joint(fit.model):
                 found = best_range(rows, found)
-            if is_a_spring(rows, found.model):
-                passed_over.append(name)
-                continue
             fits[name] = found
         weighed = replace(
             contest,
@@ -166,6 +167,13 @@ def _best(
         # Whether its size is possible shows at the end.
         best = fit_model(rows, best.model, best.parameters, units=units, iterations=_ITERATIONS)
     return best
+
+
+def _as_begun(rows: Sequence[RecordRows], model: ForceModel, units: UnitRows) -> ModelFit:
+    """Return the fit of a model whose last term keeps its shape: free, it ran to a wrong sign."""
+    last = len(model.terms) - 1
+    free = tuple(p for p in free_parameters(model) if p.shape is None or p.term < last)
+    return fit_model(rows, model, free, iterations=_ITERATIONS, enough=_ENOUGH, units=units)
 
 
 def at_most_filtered(terms: Sequence[FittedTerm]) -> bool:

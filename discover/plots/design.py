@@ -32,7 +32,8 @@ def sections(document: Mapping[str, Any]) -> str:
         for one, (title, geometry) in zip(axes, shown, strict=True):
             _section(one, geometry)
             turns, bore = geometry["turns"], 2e3 * geometry["channel_radius"]
-            one.set_title(f"{title}: {turns:.3g} turns, bore {bore:.3g} mm")
+            wound = f"{turns:.3g} turn{'' if turns == 1.0 else 's'}"
+            one.set_title(f"{title}: {wound}, bore {bore:.3g} mm")
             one.set_xlabel("Radius (mm)")
         axes[0].set_ylabel("Height (mm)")
         return to_svg(drawing, name="sections", title="Sections through baseline and design")

@@ -214,6 +214,19 @@ def test_a_curve_of_friction_s_own_does_not_stand_for_a_power_law(exponent):
     assert found.rounds[0].effect == "power-law-damping"
 
 
+@pytest.mark.parametrize("exponent", [0.5, 0.7])
+def test_a_power_law_whose_free_exponent_runs_away_is_still_weighed(exponent):
+    """Its fit turned negative, with an exponent over one beside the viscous damping."""
+
+    def law(t, x, v, a):
+        growing = 60.0 * np.sign(v) * np.abs(v / 0.1) ** exponent
+        plain = 44.0 * a + 300.0 * v + 100.0 * v * np.abs(v)
+        return plain + 40.0 * np.tanh(v / 2e-3) + growing
+
+    found = close_gap(campaign(law), f"{BASELINE},quadratic-damping,coulomb-friction")
+    assert found.rounds[0].effect == "power-law-damping"
+
+
 @pytest.mark.parametrize("curve", [erf, np.tanh, two_seals])
 def test_a_knee_does_not_stand_for_a_fall_of_friction(curve):
     def law(t, x, v, a):

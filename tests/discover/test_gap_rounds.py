@@ -186,6 +186,7 @@ def test_an_effect_shows_where_several_records_gain_and_the_gap_does_not_grow(ga
     ([1.01, 1.01, 1.01, 1.01], False, True),  # what noise may move
     ([1.0, 1.0, 1.0, 1.2], False, False),
     ([0.7, 0.7, 0.7, 1.2], False, True),  # one loud record loses what quiet ones gain
+    ([0.1, 0.1, 0.1, 9.0], False, True),  # one alone shows an earlier effect: no other predicts it
     ([1.0, 1.0, 1.0, 1.2], True, True),  # those held out judge, and choose nothing
 ])
 def test_a_further_effect_has_to_predict_records_that_are_left_out(errors, held_out, predicts):
