@@ -36,6 +36,23 @@ def two():
     return contest_of(law)
 
 
+def test_what_has_an_impossible_sign_leaves_the_lead_to_the_next(monkeypatch):
+    """Refused when it was tried, it had left everything to "unknown"."""
+
+    def law(t, x, v, a):
+        return device(t, x, v, a) + 40.0 * np.tanh(v / 1e-3)
+
+    _, contest, fits = contest_of(law)
+    assert contest.ranked[0][0] == "coulomb-friction" in fits
+    assert "power-law-damping" not in fits
+    monkeypatch.setattr(
+        "discover.naming.refine.pulls", lambda terms: terms[-1].id == "coulomb-friction"
+    )
+    _, contest, fits = contest_of(law)
+    assert contest.best("coulomb-friction") is None
+    assert "power-law-damping" in fits
+
+
 def test_a_pair_is_fitted_together_and_leaves_less_than_either(two):
     rows, contest, fits = two
     pairs = pairs_ahead(rows, contest, fits, EFFECTS)
