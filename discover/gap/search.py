@@ -14,6 +14,7 @@ from discover.gap.doubt import Doubt, doubt_of_added, share_of, within_doubt
 from discover.gap.mending import impossible, mended, without_superfluous
 from discover.gap.reversing import with_curve_of
 from discover.gap.stages import Stage, seen_gap, stage
+from discover.gap.whole_power import POWER_LAW, as_whole_power
 from discover.naming.ahead import every_joint, pairs_ahead
 from discover.naming.columns import CandidateColumns
 from discover.naming.contest import Contest, leaves_much, reweighed, run_contest
@@ -222,7 +223,7 @@ def _within(
 ) -> bool:
     """Tell whether no more is left than the shapes of what was added may be wrong by."""
     done = [(r.effect, r.before, r.after) for r in rounds]
-    return (bool(done) or given.square > 0.0) and within_doubt(rows, now, given, done)
+    return bool(done or given.square > 0.0) and within_doubt(rows, now, given, done)
 
 
 def _again(
@@ -268,6 +269,8 @@ def _tried(
     gained = now.fit.chi2 - fit.chi2
     if gained < max(_TOO_LITTLE * contest.excess, _FEWEST) or impossible(fit.model, name):
         return _Next(contest.without(name, None if _beyond(rows, now) else AGREES))
+    if name == POWER_LAW and (it := as_whole_power(fitted, now.fit, contest, fit, left.effects)):
+        return _tried(rows, fitted, now, left, it.contest, None, it.name)
     same = with_member(fitted, now.fit, [r.effect for r in left.rounds]) if left.curves else None
     if same is not None and same[1].chi2 < fit.chi2:
         return _Next(contest.without(name), waits=True)
@@ -305,9 +308,8 @@ def _predicts(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
     if pooled(after.unseen) <= (1.0 + _WORSE) * pooled(before.unseen):
         return True
     # One record alone may show an earlier effect: left out, only chance predicts it.
-    pairs = zip(before.unseen, after.unseen, strict=True)
-    change = [np.log(max(now.percent, 1e-9) / max(was.percent, 1e-9)) for was, now in pairs]
-    return bool(np.mean(change) < np.log1p(-_CLEARLY))
+    was, now = (np.log([max(m.percent, 1e-9) for m in at.unseen]) for at in (before, after))
+    return bool(np.mean(now - was) < np.log1p(-_CLEARLY))
 
 
 def _by_record(misfits: Sequence[Misfit]) -> float:
@@ -341,10 +343,7 @@ def _beyond(rows: Sequence[RecordRows], at: Stage) -> bool:
 def _one_stands_out(
     fitted: Sequence[RecordRows], at: Stage, contest: Contest, fits: Mapping[str, ModelFit]
 ) -> bool:
-    """Tell whether the misfit beyond the noise is that of one record's lines.
-
-    So it is where no more is left in all, unless what is named explains enough of the others.
-    """
+    """Tell whether the misfit beyond the noise is one record's, and what is named explains it."""
     if len(fitted) < _SEVERAL:
         return False
     before = misfits(fitted, at.fit)

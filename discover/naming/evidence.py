@@ -108,6 +108,11 @@ def probabilities_of(
     return result
 
 
+def odds_of_a_parameter(rows: int) -> float:
+    """Return the odds of a hypothesis against one that fits as well with a parameter more."""
+    return float(np.exp(0.5 * np.log(rows) / _TEMPERATURE))
+
+
 def share_beside(entries: Sequence[Entry], effect: str, other: str) -> float:
     """Return the share of what is said for an effect that rests on another one beside it."""
     own = [e for e in entries if e.effects[:1] == (effect,)]

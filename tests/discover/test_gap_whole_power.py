@@ -1,0 +1,39 @@
+"""Powers that are nearly whole, and one that is not."""
+
+import numpy as np
+import pytest
+
+from discover.gap import close_gap
+from tests.discover.gap_data import campaign
+
+BASELINE = "fit:inertia,viscous-damping,coulomb-friction"
+
+
+def arcs(u):
+    """Two seals that near their limit slowly."""
+    return 2.0 / np.pi * (0.6 * np.arctan(u) + 0.4 * np.arctan(u / 8.0))
+
+
+def law(exponent, seal=200.0, over=3e-4):
+    def force(t, x, v, a):
+        grown = np.sign(v) * np.abs(v / 0.1) ** exponent
+        return 120.0 * a + 300.0 * v + seal * arcs(v / over) + 60.0 * grown
+
+    return force
+
+
+@pytest.mark.parametrize("exponent", [2.0, 2.06])
+def test_a_power_of_nearly_two_is_quadratic_damping(exponent):
+    """Beside friction of another curve it was a power law with certainty, also where it is v|v|."""
+    found = close_gap(campaign(law(exponent)), BASELINE)
+    (only,) = found.rounds
+    assert only.effect == "quadratic-damping"
+    assert only.coefficient == pytest.approx(60.0 / 0.1**exponent, rel=0.05)
+    assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
+
+
+def test_the_power_of_turbulent_flow_is_not():
+    found = close_gap(campaign(law(1.75, 90.0), noise=0.003), BASELINE)
+    first = found.rounds[0]
+    assert first.effect == "power-law-damping"
+    assert first.parameters["exponent"] == pytest.approx(1.75, abs=0.1)
