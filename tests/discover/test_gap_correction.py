@@ -174,16 +174,15 @@ def test_friction_that_nears_its_limit_slowly_is_no_missing_effect(curve):
     assert found.verdict == "agrees"
 
 
-@pytest.mark.parametrize("viscous", [400.0, 800.0])
-def test_a_curve_of_friction_s_own_does_not_stand_for_a_resistance(viscous):
-    """Friction alone was named, and 8 to 13 times the noise left.
+def test_a_curve_of_friction_s_own_does_not_stand_for_a_resistance():
+    """Friction alone was named, and thirteen times the noise left.
 
     Its curve was corrected by a reversal over a fifth of all speeds, and the doubt of its shape,
     counted twice, tolerated the rest.
     """
 
     def law(t, x, v, a):
-        return 120.0 * a + viscous * v + 2000.0 * v * np.abs(v) + 200.0 * arcs(v / 3e-3)
+        return device(t, x, v, a) + 2000.0 * v * np.abs(v) + 200.0 * arcs(v / 3e-3)
 
     found = close_gap(campaign(law, noise=0.003), "fit:inertia,quadratic-damping")
     assert [r.effect for r in found.rounds] == ["coulomb-friction", "viscous-damping"]
@@ -214,12 +213,11 @@ def test_a_curve_of_friction_s_own_does_not_stand_for_a_power_law(exponent):
     assert found.rounds[0].effect == "power-law-damping"
 
 
-@pytest.mark.parametrize("exponent", [0.5, 0.7])
-def test_a_power_law_whose_free_exponent_runs_away_is_still_weighed(exponent):
+def test_a_power_law_whose_free_exponent_runs_away_is_still_weighed():
     """Its fit turned negative, with an exponent over one beside the viscous damping."""
 
     def law(t, x, v, a):
-        growing = 60.0 * np.sign(v) * np.abs(v / 0.1) ** exponent
+        growing = 60.0 * np.sign(v) * np.abs(v / 0.1) ** 0.5
         plain = 44.0 * a + 300.0 * v + 100.0 * v * np.abs(v)
         return plain + 40.0 * np.tanh(v / 2e-3) + growing
 
