@@ -31,7 +31,7 @@ from discover.naming.evidence import (
     usual_left,
 )
 from discover.naming.fit import ModelFit, kind_of, telling
-from discover.naming.forces import MOST_FILTERED, behind_filter, in_record, is_joint
+from discover.naming.forces import MOST_FILTERED, behind_filter, in_record, is_joint, is_sensor
 from discover.naming.pairs import pairs_with, unlikely
 from discover.naming.reversal import other_reversals, reversal_doubt
 from discover.naming.rows import RecordRows
@@ -367,10 +367,11 @@ def reweighed(
 def _really_left(rows: Sequence[RecordRows], fit: ModelFit, entry: Entry) -> float:
     """Return the chi-square of an effect's fit.
 
-    A straight line to a changed input or output may promise more than a change of its size gives.
+    A straight line to what a sensor does may promise more than a change of its size gives; what is
+    simulated may not have been fitted to its best.
     """
     left = _left(rows, fit)
-    return min(left, entry.chi2) if TERMS[entry.effects[0]].acts == "force" else left
+    return left if is_sensor(TERMS[entry.effects[0]]) else min(left, entry.chi2)
 
 
 def _left(rows: Sequence[RecordRows], fit: ModelFit) -> float:
