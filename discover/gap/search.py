@@ -270,7 +270,7 @@ def _tried(
     if gained < max(_TOO_LITTLE * contest.excess, _FEWEST) or impossible(fit.model, name):
         return _Next(contest.without(name, None if _beyond(rows, now) else AGREES))
     if name == POWER_LAW and (it := as_whole_power(fitted, now.fit, contest, fit, left.effects)):
-        return _tried(rows, fitted, now, left, it.contest, None, it.name)
+        return _tried(rows, fitted, now, left, it.contest, it.fit, it.name)
     same = with_member(fitted, now.fit, [r.effect for r in left.rounds]) if left.curves else None
     if same is not None and same[1].chi2 < fit.chi2:
         return _Next(contest.without(name), waits=True)
@@ -343,7 +343,7 @@ def _beyond(rows: Sequence[RecordRows], at: Stage) -> bool:
 def _one_stands_out(
     fitted: Sequence[RecordRows], at: Stage, contest: Contest, fits: Mapping[str, ModelFit]
 ) -> bool:
-    """Tell whether the misfit beyond the noise is one record's, and what is named explains it."""
+    """Tell whether one record has all misfit beyond the noise, which no name has in others too."""
     if len(fitted) < _SEVERAL:
         return False
     before = misfits(fitted, at.fit)

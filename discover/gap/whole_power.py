@@ -25,6 +25,8 @@ class WholePower:
     """Id of the whole power's effect."""
     contest: Contest
     """With what both have shared between them."""
+    fit: ModelFit
+    """With the whole power, mended."""
 
 
 def as_whole_power(
@@ -65,4 +67,4 @@ def as_whole_power(
     chances = {
         **contest.probabilities, name: both * odds / (1.0 + odds), POWER_LAW: both / (1.0 + odds),
     }
-    return WholePower(name, replace(contest, probabilities=chances))
+    return WholePower(name, replace(contest, probabilities=chances), other)

@@ -44,7 +44,7 @@ _NOISE_UNCERTAINTY = 0.12  # of the noise's variance, over all rows
 _LEFT_ALONE = 0.04  # of the misfit: where the best alone leaves more, a pair is sought
 _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
-_CURVE_S = 0.1  # of the misfit, that the doubt of friction's curve leaves where it is mostly that
+_BUT_THE_CURVE = 0.1  # of the misfit, left beside the doubt of friction's curve: nearly all is it
 _AN_ANSWER = 0.05
 _UNEVEN = 5
 _TELLING = 4  # records, by which joints are chosen that are tried on all
@@ -165,7 +165,7 @@ def run_contest(
     freed = without_span(raw, tangents)
     target = without_span(fit.residual[None], tangents)[0]
     chi2 = float(target @ target)
-    if chi2 < _CURVE_S * fit.chi2:
+    if chi2 < _BUT_THE_CURVE * fit.chi2:
         tolerated *= chi2 / fit.chi2  # the doubt of friction's curve, which is out, was all of it
     noise += tolerated
 
