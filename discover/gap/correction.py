@@ -2,7 +2,7 @@
 
 A measured effect follows no formula exactly. What it leaves is looked for along the effect's own
 coordinate: a further member of its family (another speed, power, gap or time) beside the one that
-was named.
+was named. Seals' friction follows none either: at last a curve of its own is tried for it.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.gap.accuracy import pooled
-from discover.gap.reversing import WIDEST
+from discover.gap.accuracy import Misfit, pooled
+from discover.gap.reversing import WIDEST, curves_of_its_own
 from discover.gap.stages import Stage, left_out, record_misfit, stage
 from discover.naming.candidates import Part, Variant, variants
 from discover.naming.columns import candidate_columns, without_span
@@ -28,6 +28,7 @@ _POWERS = {
     "asymmetric-damping": (0.5, 1.0, 1.5, 2.0, 3.0),
     "position-dependent-friction": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0),
 }
+_FRICTION = "coulomb-friction"
 _SIDES = (0.0, 1.0, -1.0)
 _CLOSE = 1.1  # times the noise floor, up to which no curve is corrected
 _WORTH = 0.05  # of the gap of records that were left out, that a correction has to close
@@ -43,7 +44,7 @@ class Correction:
     """Curves that differ from their formulas."""
 
     effects: tuple[str, ...]
-    """Whose: once for each member that was added beside its formula."""
+    """Whose: once for each member that was added beside its formula, or for friction's curve."""
     stage: Stage
     """After it."""
 
@@ -54,6 +55,7 @@ def corrected(
     now: Stage,
     effects: Sequence[str],
     *,
+    before: Sequence[str] = (),
     most: int,
 ) -> Correction | None:
     """Return the curves of the added effects corrected by further members of their families.
@@ -68,6 +70,8 @@ def corrected(
         With the effects' formulas.
     effects : sequence of str
         Ids that were added.
+    before : sequence of str
+        Whose curves were corrected already: once for each member.
     most : int
         Members at most.
 
@@ -76,10 +80,9 @@ def corrected(
     Correction or None
         None where nothing is added or left, or no member helps.
     """
-    seen = [m for r, m in zip(rows, now.misfits, strict=True) if not r.observation.held_out]
+    seen = _of_fitted(rows, now)
     floor = pooled(seen, noise=True)
-    marked = len(fitted) < len(rows)
-    unseen = left_out(fitted, now.fit) if marked else now.unseen
+    unseen = _each_left_out(rows, fitted, now)
     if not effects or not unseen:
         return None
     best, nearest = None, pooled(unseen)
@@ -103,7 +106,78 @@ def corrected(
             best, nearest = (tuple(names), fit), gap
     if best is None:
         return None
-    return Correction(best[0], stage(rows, best[1]))
+    return _kept(rows, fitted, [*before, *best[0]], best[1])
+
+
+def _kept(
+    rows: Sequence[RecordRows],
+    fitted: Sequence[RecordRows],
+    members: Sequence[str],
+    fit: ModelFit,
+) -> Correction:
+    """Return the correction without members that others have left nothing to do."""
+    left = list(members)
+    terms = list(fit.model.terms)
+    for t in fit.model.terms:
+        if t.coefficient == 0.0 and t.id in left:
+            left.remove(t.id)
+            terms.remove(t)
+    if len(left) < len(members):
+        model = ForceModel(tuple(terms), fit.model.name)
+        fit = fit_model(fitted, model, free_parameters(model), iterations=0)
+    return Correction(tuple(left), stage(rows, fit))
+
+
+def reversal_corrected(
+    rows: Sequence[RecordRows],
+    fitted: Sequence[RecordRows],
+    now: Stage,
+    before: Sequence[str] = (),
+) -> Correction | None:
+    """Return friction's reversal along a curve of its own, where that predicts records better.
+
+    Such a curve could stand for an effect: it is for when nothing more is named.
+
+    Parameters
+    ----------
+    rows : sequence of RecordRows
+        All records.
+    fitted : sequence of RecordRows
+        Those that are not held out: each is left out in turn, and has to be predicted better.
+    now : Stage
+        With all that was added.
+    before : sequence of str
+        Whose curves were corrected already: once for each member.
+
+    Returns
+    -------
+    Correction or None
+        None where too little is left, or no curve helps.
+    """
+    floor = pooled(_of_fitted(rows, now), noise=True)
+    unseen = _each_left_out(rows, fitted, now)
+    best, nearest = None, pooled(unseen)
+    if not unseen or nearest <= _CLOSE * floor:
+        return None
+    for trial in curves_of_its_own(fitted, now.fit):
+        gap = pooled(left_out(fitted, trial))
+        if gap < (1.0 - _WORTH) * nearest:
+            best, nearest = trial, gap
+        if nearest <= _CLOSE * floor:
+            break
+    return None if best is None else _kept(rows, fitted, [*before, _FRICTION], best)
+
+
+def _of_fitted(rows: Sequence[RecordRows], now: Stage) -> list[Misfit]:
+    """Return the misfits of the records that are not held out."""
+    return [m for r, m in zip(rows, now.misfits, strict=True) if not r.observation.held_out]
+
+
+def _each_left_out(
+    rows: Sequence[RecordRows], fitted: Sequence[RecordRows], now: Stage
+) -> tuple[Misfit, ...]:
+    """Return the misfits of the fitted records, each left out in turn."""
+    return left_out(fitted, now.fit) if len(fitted) < len(rows) else now.unseen
 
 
 def with_member(

@@ -9,7 +9,7 @@ import numpy as np
 
 from discover.figure_data import EffectShape, GapCurves
 from discover.gap.accuracy import Misfit
-from discover.gap.search import Round
+from discover.gap.rounds import Round
 from discover.gap.stages import without
 from discover.naming.forces import model_force, needs_cycle
 from discover.naming.rows import RecordRows

@@ -10,7 +10,7 @@ from discover.gap.stages import left_out, record_misfit, without
 from discover.naming.contest import Contest
 from discover.naming.evidence import Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
-from discover.naming.forces import has_impacts, has_joint, is_joint, of_each_test
+from discover.naming.forces import has_impacts, is_joint, of_each_test
 from discover.naming.polish import polished
 from discover.naming.refine import at_most_filtered, extended, pulls
 from discover.naming.restart import best_range, restarted
@@ -45,7 +45,7 @@ def mended(
     else:
         found = restarted(rows, found) if is_joint(name) else found
         found = polished(rows, found) if has_impacts(found.model) else found
-    return found if has_joint(found.model) else reversing_as_sampled(rows, found)
+    return reversing_as_sampled(rows, found)
 
 
 def _shared(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from discover.gap.accuracy import Misfit
 from discover.gap.stages import record_misfit
 from discover.naming.fit import ModelFit, Parameter, fit_model, free_parameters, kind_of
+from discover.naming.forces import has_impacts, has_joint
 from discover.naming.reversal import reversing_friction
 from discover.naming.rows import RecordRows
 from models.checks import Array
@@ -24,8 +25,10 @@ _ANY = 1.35  # likewise, of each one, whose noise is known that well
 _BY_A_KNEE = 0.6  # of what is left above the noise, to which a knee has to bring it
 _OTHER = (4.0, 0.25)  # times the range of reversal, over which a part of it may reverse instead
 _OTHER_SHARE = 0.3
+_KNEE = {"sharpness": 1.0}
 _FARTHEST = 20.0  # times one part's range, to which the other's may reach: beyond it, a resistance
 WIDEST = 0.05  # of the greatest speed, likewise
+_STEPS = 12  # of a fit, to harmonics, with a curve of its own
 
 
 def reversing_as_sampled(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
@@ -39,10 +42,11 @@ def reversing_as_sampled(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     rows : sequence of RecordRows
         Records that are fitted.
     fit : ModelFit
-        Of a model; returned as it is where none of its friction's range of reversal is free.
+        Of a model; returned as it is where none of its friction's range of reversal is free, or
+        behind a joint with impacts. Behind another joint only plain curves are tried.
     """
-    place = reversing_friction(fit.model)
-    if place is None or Parameter(place, "transition_speed") not in fit.parameters:
+    place = _free_reversal(fit)
+    if place is None or has_impacts(fit.model):
         return fit
     best, left = fit, _misfits(rows, fit)
     curve = _curve(fit, place)
@@ -55,7 +59,48 @@ def reversing_as_sampled(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
         now = _misfits(rows, trial)
         if 1.0 / _ANOTHER_WIDTH < width < _ANOTHER_WIDTH and _gap(now) < _CLEARER * _gap(left):
             best, left = trial, now
-    return best if _fine(best, left) else _own_curve(rows, best, place, left)
+    if has_joint(fit.model) or _fine(best, left):
+        return best
+    return _own_curve(rows, best, place, left)
+
+
+def curves_of_its_own(rows: Sequence[RecordRows], fit: ModelFit) -> Iterator[ModelFit]:
+    """Return fits whose friction reverses along curves of its own, however much they leave.
+
+    The simplest first: a knee, then a part that reverses over another range.
+
+    Parameters
+    ----------
+    rows : sequence of RecordRows
+        Records that are fitted.
+    fit : ModelFit
+        Of a model; where its friction has a curve of its own already, there are no others.
+    """
+    place = _free_reversal(fit)
+    if place is None or has_impacts(fit.model):
+        return
+    curve = _curve(fit, place)
+    if curve["sharpness"] > 0.0 or curve["other_share"] > 0.0:
+        return
+    speeds = [times * curve["transition_speed"] for times in _OTHER]
+    for own in (_KNEE, *(two for speed in speeds for two in _in_two_parts(speed))):
+        model = _model_with(fit, place, {**curve, **own})
+        found = fit_model(rows, model, free_parameters(model), iterations=_STEPS)
+        if _reverses(rows, found, place):
+            yield found
+
+
+def _in_two_parts(speed: float) -> list[dict[str, float]]:
+    """Return curves of which a part reverses over another range of speed, m/s."""
+    other = {**_KNEE, "other_speed": speed, "other_share": _OTHER_SHARE}
+    return [{**other, "form": form} for form in (0.0, 1.0)]
+
+
+def _free_reversal(fit: ModelFit) -> int | None:
+    """Return the place of friction whose range of reversal is fitted; None without one."""
+    place = reversing_friction(fit.model)
+    free = place is not None and Parameter(place, "transition_speed") in fit.parameters
+    return place if free else None
 
 
 def with_curve_of(
@@ -65,8 +110,8 @@ def with_curve_of(
 
     Only coefficients are fitted: beside what is missing the curve would move away again.
     """
-    place, found = reversing_friction(fit.model), reversing_friction(other.model)
-    if place is None or found is None or Parameter(place, "transition_speed") not in fit.parameters:
+    place, found = _free_reversal(fit), reversing_friction(other.model)
+    if place is None or found is None:
         return None
     curve = _curve(other, found)
     if kind_of(curve) == kind_of(_curve(fit, place)):
@@ -87,14 +132,13 @@ def _own_curve(
     curve = _curve(fit, place)
     if curve["other_share"] > 0.0:
         return fit
-    speed, knee = curve["transition_speed"], {"sharpness": 1.0}
-    trials = [_as_sampled(rows, fit, place, knee)]
+    speed = curve["transition_speed"]
+    trials = [_as_sampled(rows, fit, place, _KNEE)]
     bent, now = trials[0]
     if not _met(now) and _above(now) > _BY_A_KNEE * _above(left):
         return fit
     for times in () if _fine(bent, now) else _OTHER:
-        other = {**knee, "other_speed": times * speed, "other_share": _OTHER_SHARE}
-        trials += [_as_sampled(rows, fit, place, {**other, "form": form}) for form in (0.0, 1.0)]
+        trials += [_as_sampled(rows, fit, place, two) for two in _in_two_parts(times * speed)]
         if any(_fine(found, now) for found, now in trials):
             break
     met = [

@@ -21,7 +21,8 @@ from discover.gap.result import (
     NamedEffect,
     RecordGap,
 )
-from discover.gap.search import Round, Search, search
+from discover.gap.rounds import Round
+from discover.gap.search import Search, search
 from discover.gap.stages import Stage, seen_gap
 from discover.gap.standard_error import standard_errors
 from discover.gap.where import places, surface, where_in_words

@@ -12,6 +12,7 @@ from models.checks import Array
 
 _NOISE = 1.2  # of chi-square a row, up to which only noise is left
 _FEWEST = 4  # records or windows, that can tell how much they differ
+_ALONE = 0.97  # of what all tell about a parameter: where one tells that, no other judges it
 
 
 def standard_errors(rows: Sequence[RecordRows], fit: ModelFit) -> dict[int, float]:
@@ -20,7 +21,8 @@ def standard_errors(rows: Sequence[RecordRows], fit: ModelFit) -> dict[int, floa
     Where more than noise is left, a wrong shape shows alike in all lines of a record and not anew
     in each: the error is then the jackknife's over whole records, or of few records over their
     windows (Efron and Stein 1981; here along the fit's tangents), at least the noise's. From too
-    few of either it is the noise's, raised by what is left.
+    few of either it is the noise's, raised by what is left; likewise of a parameter that one record
+    alone tells, as the one in which a stop is met.
 
     Parameters
     ----------
@@ -36,7 +38,7 @@ def standard_errors(rows: Sequence[RecordRows], fit: ModelFit) -> dict[int, floa
     if raised <= _NOISE or len(sizes) < _FEWEST:
         variance = raised * variance
     else:
-        variance = np.maximum(variance, _jackknife(sizes, fit))
+        variance = _jackknife(sizes, fit, variance, raised)
     return {
         p.term: float(np.sqrt(max(value, 0.0)))
         for p, value in zip(fit.parameters, variance, strict=True)
@@ -52,13 +54,20 @@ def _parts(rows: Sequence[RecordRows]) -> list[int]:
     return sizes
 
 
-def _jackknife(sizes: Sequence[int], fit: ModelFit) -> Array:
-    """Return the variances (P,) that leaving out each part of the rows in turn tells."""
+def _jackknife(sizes: Sequence[int], fit: ModelFit, noise: Array, raised: float) -> Array:
+    """Return the variances (P,) that leaving out each part of the rows in turn tells.
+
+    At least those of the noise (P,); these `raised` where one part tells all.
+    """
     ends = np.cumsum(sizes)[:-1]
     tangents = np.split(fit.tangents, ends, axis=1)
     left = np.split(fit.residual, ends)
     whole = fit.tangents @ fit.tangents.T
-    moved = np.stack([
-        inverse(whole - t @ t.T) @ (t @ part) for t, part in zip(tangents, left, strict=True)
+    told = np.diagonal(whole)
+    alone = np.stack([np.sum(t**2, axis=1) > _ALONE * told for t in tangents])
+    moved = np.stack([  # what a part alone tells stays as it is without it
+        inverse(whole - t @ t.T + np.diag(np.where(own, told, 0.0))) @ (t @ part)
+        for t, part, own in zip(tangents, left, alone, strict=True)
     ])
-    return np.asarray((len(sizes) - 1.0) * np.mean(moved**2, axis=0))
+    found = (len(sizes) - 1.0) * np.mean(moved**2, axis=0)
+    return np.asarray(np.maximum(found, np.where(alone.any(axis=0), raised, 1.0) * noise))

@@ -22,6 +22,7 @@ _FACTORS = {  # of a joint's shape
 }
 _LOSSES: tuple[float, ...] = (0.1, 0.5)
 _LAGS = (0.03, 0.06, 0.12)  # of a valve, over the greatest angular frequency
+_VALVES = (0.0, 0.25, 1.0)  # its resistance, of the limit over the greatest speed
 _SPRINGS = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # factors of a compliance
 _LOADS = (  # half load over the greatest force, and the share of compliance that load takes
     (0.15, 0.3), (0.15, 0.7), (0.5, 0.3), (0.5, 0.7), (2.0, 0.9), (0.1, -0.2), (0.4, -0.5),
@@ -174,7 +175,11 @@ def _others(joint: FittedTerm, scales: Scales) -> list[FittedTerm]:
     losses, choices = _LOSSES, [dict[str, float]()]
     if joint.id == "cavitation":
         losses = (joint.shape["loss"],)
-        choices += [{"refill": 1.0, "lag": lag / scales.omega} for lag in _LAGS]
+        resistance = joint.shape["limit"] / scales.speed
+        choices += [
+            {"refill": 1.0, "lag": lag / scales.omega, "valve": share * resistance}
+            for lag, share in product(_LAGS, _VALVES)
+        ]
     found = []
     scaled = product(*(_FACTORS[n] for n in names))
     for factors, loss, choice in product(scaled, losses, choices):

@@ -6,7 +6,7 @@ with the greatest misfits, and the best are evolved (differential evolution, Sto
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ from scipy.stats import qmc
 from discover.naming.columns import span_of, without_basis
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.rows import RecordRows
-from discover.naming.scales import scales_of
+from discover.naming.scales import Scales, scales_of
 from discover.naming.unit_rows import UnitRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
@@ -28,10 +28,11 @@ _NEAR = {  # factors of what a fit found, either way
 }
 _LOSSES = (0.02, 1.0)
 _LAGS = (0.01, 0.5)  # of a valve, over the greatest angular frequency
-_AT_ONCE = 0.3  # of the shapes, that a valve closes without a lag in
-_SCATTERED = 9  # power of two, of shapes
-_EVOLVED = 24
-_GENERATIONS = 15
+_VALVES = (0.03, 3.0)  # its resistance, of the limit over the greatest speed
+_AT_ONCE = 0.3  # of the shapes, that a valve closes without a lag in, or lets through freely
+_SCATTERED = 10  # power of two, of shapes
+_EVOLVED = 32
+_GENERATIONS = 40
 _RANK_ON, _EVOLVE_ON = 2, 4  # records
 _STEPS = 6
 _ENOUGH = 0.003
@@ -55,7 +56,7 @@ def scattered(
     *rest, joint = fit.model.terms
     if not joint.shape.get("contact", 0.0):
         return fit
-    box = _Box.around(joint, scales_of([r.observation for r in samples]).omega)
+    box = _Box.around(joint, scales_of([r.observation for r in samples]))
     seen = [samples[i] for i in telling[:_EVOLVE_ON]]
     units = UnitRows()
 
@@ -105,15 +106,19 @@ class _Box:
     """In the middle."""
     names: tuple[str, ...]
     """Of the shape's parameters, in the cube's order."""
-    omega: float
-    """Greatest angular frequency, rad/s."""
+    valves: Mapping[str, tuple[float, float]]
+    """Least and greatest of those that may be 0 besides."""
 
     @classmethod
-    def around(cls, joint: FittedTerm, omega: float) -> _Box:
+    def around(cls, joint: FittedTerm, scales: Scales) -> _Box:
         """Return the box around a joint."""
         names = [*(n for n in _NEAR if joint.shape.get(n, 0.0) > 0.0), "loss"]
-        names += ["lag"] if "lag" in joint.shape else []
-        return cls(joint, tuple(names), omega)
+        valves = {}
+        if "lag" in joint.shape:
+            resistance = joint.shape["limit"] / scales.speed
+            valves["lag"] = _LAGS[0] / scales.omega, _LAGS[1] / scales.omega
+            valves["valve"] = _VALVES[0] * resistance, _VALVES[1] * resistance
+        return cls(joint, (*names, *valves), valves)
 
     @property
     def size(self) -> int:
@@ -130,11 +135,11 @@ class _Box:
         if name == "loss":
             low, high = _LOSSES
             return float(np.clip((value - low) / (high - low), 0.0, 1.0))
-        if name == "lag":
+        if name in self.valves:
             if value == 0.0:
                 return 0.0
-            low, high = np.log(_LAGS)
-            share = (np.log(value * self.omega) - low) / (high - low)
+            low, high = np.log(self.valves[name])
+            share = (np.log(value) - low) / (high - low)
             return float(np.clip(_AT_ONCE + (1.0 - _AT_ONCE) * share, _AT_ONCE, 1.0))
         return 0.5
 
@@ -144,11 +149,11 @@ class _Box:
         for name, place in zip(self.names, point, strict=True):
             if name == "loss":
                 found[name] = float(_LOSSES[0] + place * (_LOSSES[1] - _LOSSES[0]))
-            elif name == "lag":
-                low, high = np.log(_LAGS)
+            elif name in self.valves:
+                low, high = np.log(self.valves[name])
                 share = (place - _AT_ONCE) / (1.0 - _AT_ONCE)
-                waits = float(np.exp(low + share * (high - low)) / self.omega)
-                found[name] = waits if found["refill"] > 0.0 and share > 0.0 else 0.0
+                there = found["refill"] > 0.0 and share > 0.0
+                found[name] = float(np.exp(low + share * (high - low))) if there else 0.0
             else:
                 found[name] *= float(_NEAR[name] ** (2.0 * place - 1.0))
         return found

@@ -45,7 +45,8 @@ def gap_lines(document: Mapping[str, Any]) -> list[str]:
         The search as in ``gap.json``.
     """
     verdict = str(document["verdict"])
-    names = [_missing(r) for r in document["rounds"]]
+    dropped = {name for r in document["rounds"] for name in r.get("dropped", ())}
+    names = [_missing(r) for r in document["rounds"] if r["effect"] not in dropped]
     lines = error_lines(document)
     lines.append(f"Verdict: {verdict}: {_said(document, verdict)}.")
     if names:
@@ -104,6 +105,8 @@ def _round(entry: Mapping[str, Any]) -> str:
     ]
     if others:
         text += f", or {listed(others, last='or')}"
+    if entry.get("dropped"):
+        text += f", instead of {listed([short_name(str(e)) for e in entry['dropped']])}"
     return (
         f"{text}; gap {percent(entry['gap_before_percent'])} to"
         f" {percent(entry['gap_after_percent'])}{_corrected(entry.get('corrected'))}"
@@ -116,6 +119,7 @@ def _corrected(entry: Mapping[str, Any] | None) -> str:
         return ""
     counts = Counter(str(e) for e in entry["effects"])
     terms = [
+        "friction reverses along a curve of its own" if name == "coulomb-friction" else
         f"the curve of {short_name(name)} takes {number} more {'term' if number == 1 else 'terms'}"
         for name, number in counts.items()
     ]

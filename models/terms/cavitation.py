@@ -15,8 +15,9 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
 
     With `contact` (rad/s) above 0 the oil column tears: a void grows while the limit holds, the
     fluid lags behind, and force returns when the void is filled, or where a valve makes up what
-    is lost (`refill` 1), with a slam `lag` (s) after the flow has turned. With `contact` 0 the
-    force is only cut.
+    is lost (`refill` 1), with a slam `lag` (s) after the flow has turned. The limit deepens by
+    the resistance of such a valve (`valve`, N s/m) to what it makes up. With `contact` 0 the force
+    is only cut.
     `coefficient` 1 is all of what it changes.
     """
     force = force_of(motion)
@@ -36,6 +37,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         upper=upper,
         refilled=shape["refill"] > 0.0,
         lag=shape["lag"],
+        valve=shape["valve"],
         fluid_only=True,
     )
     return np.asarray(force + coefficient * (through_joint(force, motion, joint, device) - force))
@@ -54,6 +56,7 @@ TERM = Term(
         Parameter("loss", 0.0, 1.0, 0.2, ""),
         Parameter("refill", 0.0, 1.0, 0.0, ""),
         Parameter("lag", 0.0, 0.1, 0.0, "s"),
+        Parameter("valve", 0.0, 1e7, 0.0, "N s/m", "", "log"),
         Parameter("side", -1.0, 1.0, -1.0, ""),
     ),
     nonnegative=True,

@@ -47,6 +47,8 @@ class Joint:
     """True where what is lost at a limit is made up at once, as by a valve: the joint slips."""
     lag: float = 0.0
     """s that the valve takes to close, once the flow through it has turned."""
+    valve: float = 0.0
+    """N s/m of its resistance, by which the limit deepens as it makes up more."""
     half_load: float = 0.0
     """N of force that makes half of the spring's change under load; 0 for a linear one."""
     load_share: float = 0.0
@@ -103,7 +105,8 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, spring, stiffness,
         damping, 0.5 * joint.gap, joint.soft, joint.lower, joint.upper, int(joint.refilled),
-        joint.lag, joint.half_load, joint.load_share, joint.load_side, passes, start, bent,
+        joint.lag, joint.valve, joint.half_load, joint.load_share, joint.load_side, passes, start,
+        bent,
     )
     return np.asarray(force + carried - rigid)
 
@@ -117,8 +120,8 @@ def _size(values: Array) -> float:
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, spring: float, stiffness: float, damping: float, half: float,
-    soft: float, lower: float, upper: float, refilled: int, lag: float, half_load: float,
-    taken: float, load_side: float, passes: int, start: int, bent: float,
+    soft: float, lower: float, upper: float, refilled: int, lag: float, valve: float,
+    half_load: float, taken: float, load_side: float, passes: int, start: int, bent: float,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps.
 
@@ -177,18 +180,18 @@ def _step(
                         force += held * (now - speed - 0.5 * h * ahead)
                 else:
                     force = stiffness * depth + damping * (pace - now)
-                if refilled == 1:
-                    if turned_for < 0.0 and (force < lower or force > upper):
+                if refilled == 1 and (turned_for >= 0.0 or force < lower or force > upper):
+                    if turned_for < 0.0:
                         turned_for, limit = 0.0, lower if force < lower else upper
-                    if turned_for >= 0.0:
-                        back = (pace - now) if limit == lower else (now - pace)
-                        turned_for = turned_for + h if back > 0.0 else 0.0
-                        force = limit
-                        if turned_for > lag:
-                            gained = (pace - now) * min(turned_for - lag, h)
-                            slipped = end - position - limit / stiffness - gained
-                            turned_for = -1.0
-                force = min(max(force, lower), upper)
+                    back = (pace - now) if limit == lower else (now - pace)
+                    turned_for = turned_for + h if back > 0.0 else 0.0
+                    force = limit + valve * (pace - now)
+                    if turned_for > lag:
+                        gained = (pace - now) * min(turned_for - lag, h)
+                        slipped = end - position - force / stiffness - gained
+                        turned_for = -1.0
+                else:
+                    force = min(max(force, lower), upper)
                 total += force
                 begun = speed
                 resisted = (viscous + quadratic * abs(now)) * now + spring * position

@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.special import erf
 
 from discover.gap import close_gap
-from discover.records import Campaign
+from discover.records import Campaign, Record
 from models.constitutive import FittedTerm, ForceModel
-from tests.discover.gap_data import campaign, device
+from tests.discover.gap_data import PLAN, campaign, device
 
 BASELINE = "fit:inertia,viscous-damping"
 
@@ -248,3 +249,46 @@ def test_a_round_takes_the_curve_that_a_given_model_lacks(form):
     assert friction["form"] == 1.0
     assert friction["transition_speed"] == pytest.approx(8e-4, rel=0.1)
     assert found.final_held_out_gap_percent < 1.03 * found.noise_percent
+
+
+def behind_a_spring(frequency, amplitude, compliance, rng):
+    """Return a record of a device with two seals behind a spring, by integration in time.
+
+    Without mass of its own between spring and seals the device's speed is what its friction and
+    damping take: m v' + c v + f(v) = (x - y)/compliance.
+    """
+    omega = 2.0 * np.pi * frequency
+    period = 1.0 / frequency
+    speed = 2e-3
+
+    def seals(v):
+        return 40.0 * np.arctan(np.pi * v / speed) + 12.0 * v / np.sqrt(v**2 + (8.0 * speed) ** 2)
+
+    def rate(t, state):
+        y, v = state
+        push = (amplitude * np.sin(omega * t) - y) / compliance
+        return [v, (push - 800.0 * v - seals(v)) / 120.0]
+
+    settled = int(np.ceil(3.0 * frequency)) * period
+    t = np.arange(int((settled + 4.0 * period) / period * 400.0)) * period / 400.0
+    begin, ways = [0.0, amplitude * omega], {"method": "LSODA", "rtol": 1e-7, "atol": 1e-10}
+    found = solve_ivp(rate, (0.0, t[-1]), begin, t_eval=t, **ways)
+    x = amplitude * np.sin(omega * t)
+    kept = t >= settled
+    force = (x - found.y[0])[kept] / compliance
+    force = force + 0.01 * np.sqrt(np.mean(force**2)) * rng.standard_normal(force.size)
+    name = f"{frequency:g}hz-{1e3 * amplitude:g}mm.csv"
+    return Record(name, t[kept] - settled, force, x[kept], frequency=frequency, amplitude=amplitude)
+
+
+def test_friction_takes_a_curve_of_its_own_where_nothing_more_is_missing():
+    """Behind a spring none was tried, and slow records kept twice their noise."""
+    rng = np.random.default_rng(0)
+    records = tuple(behind_a_spring(f, a, 4e-6, rng) for f, a in PLAN)
+    found = close_gap(Campaign("behind a spring", records), f"{BASELINE},coulomb-friction")
+    (only,) = found.rounds
+    assert only.effect == "series-compliance"
+    assert only.corrected is not None
+    assert only.corrected.effects == ("coulomb-friction",)
+    assert found.final_held_out_gap_percent < 1.3 * found.noise_percent
+    assert only.corrected.unseen > 1.5 * found.noise_percent

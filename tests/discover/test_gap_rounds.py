@@ -8,7 +8,7 @@ import pytest
 
 from discover.gap import close_gap
 from discover.gap.accuracy import Misfit
-from discover.gap.search import _predicts, _shows
+from discover.gap.judging import predicts, shows
 from discover.gap.stages import Stage
 from models.constitutive import FittedTerm, ForceModel
 from tests.discover.gap_data import campaign, device
@@ -179,17 +179,17 @@ def test_an_effect_shows_where_several_records_gain_and_the_gap_does_not_grow(ga
         return Stage(SimpleNamespace(residual=residual), found, ())
 
     before, after = at(gained, 1.0), at(np.zeros(len(gained)), gap)
-    assert _shows(rows, rows, before, after) is shown
+    assert shows(rows, rows, before, after) is shown
 
 
-@pytest.mark.parametrize(("errors", "held_out", "predicts"), [
+@pytest.mark.parametrize(("errors", "held_out", "better"), [
     ([1.01, 1.01, 1.01, 1.01], False, True),  # what noise may move
     ([1.0, 1.0, 1.0, 1.2], False, False),
     ([0.7, 0.7, 0.7, 1.2], False, True),  # one loud record loses what quiet ones gain
     ([0.1, 0.1, 0.1, 9.0], False, True),  # one alone shows an earlier effect: no other predicts it
     ([1.0, 1.0, 1.0, 1.2], True, True),  # those held out judge, and choose nothing
 ])
-def test_a_further_effect_has_to_predict_records_that_are_left_out(errors, held_out, predicts):
+def test_a_further_effect_has_to_predict_records_that_are_left_out(errors, held_out, better):
     forces = [10.0, 10.0, 10.0, 300.0]
     rows = [SimpleNamespace(observation=SimpleNamespace(held_out=held_out)) for _ in forces]
 
@@ -200,4 +200,4 @@ def test_a_further_effect_has_to_predict_records_that_are_left_out(errors, held_
         ]
         return Stage(None, (), tuple(found))
 
-    assert _predicts(rows, at([1.0] * 4), at(errors)) is predicts
+    assert predicts(rows, at([1.0] * 4), at(errors)) is better

@@ -9,7 +9,7 @@ from discover.naming.fit import fit_model, free_parameters
 from discover.naming.rows import record_rows
 from discover.records import Record
 from models.constitutive import FittedTerm, ForceModel
-from tests.discover.gap_data import campaign, device
+from tests.discover.gap_data import campaign, device, record
 
 MODEL = ForceModel((
     FittedTerm("inertia", 100.0),
@@ -69,3 +69,22 @@ def test_a_long_record_is_judged_by_its_windows():
         alike.append(error < 1.96 * np.sqrt(fit.covariance[1, 1]))
     assert sum(held) >= 15
     assert sum(alike) < 15  # as lines that each err anew
+
+
+def test_what_one_record_alone_tells_keeps_an_interval():
+    """Without it nothing is known: the step to nowhere was taken for the error, of 1e7 times."""
+    rng = np.random.default_rng(9)
+    plan = [(0.5, 0.004), (1.0, 0.008), (2.0, 0.008), (4.0, 0.004), (1.0, 0.014)]
+
+    def law(t, x, v, a):
+        friction = 30.0 * (1.0 + 0.3 * rng.standard_normal())
+        stop = 2e6 * np.sign(x) * np.maximum(np.abs(x) - 0.0125, 0.0)
+        return device(t, x, v, a) + friction * np.tanh(v / 1e-3) + stop
+
+    rows = [record_rows(observe(record(f, a, law, rng))) for f, a in plan]
+    stop = FittedTerm("end-stop", 1e6, {"gap": 0.0123, "exponent": 1.2})
+    model = ForceModel((*MODEL.terms, stop))
+    fit = fit_model(rows, model, free_parameters(model))
+    found, claimed = fit.model.terms[3].coefficient, standard_errors(rows, fit)[3]
+    assert 0.01 * found < claimed < 3.0 * found
+    assert abs(found - 2e6) < 3.0 * claimed

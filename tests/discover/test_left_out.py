@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from discover.gap.search import stage
+from discover.gap.stages import stage
 from discover.motion_fit import observe
 from discover.naming.fit import fit_model, free_parameters
 from discover.naming.rows import record_rows

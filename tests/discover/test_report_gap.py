@@ -91,3 +91,15 @@ def test_warnings_stand_on_the_terminal_with_their_record():
         {"level": "warning", "text": "loud", "record": "a.csv"},
     ]
     assert warning_lines(document) == ["Warning: a.csv: loud"]
+
+
+def test_what_a_later_name_replaced_is_not_said_to_be_missing():
+    document = sample_gap_document()
+    first = document["rounds"][0]
+    other = {**first, "effect": "viscous-damping", "dropped": [first["effect"]]}
+    lines = gap_lines({**document, "rounds": [first, other]})
+    said = [line.replace("\u202f", " ") for line in lines]
+    missing = next(line for line in said if line.startswith("Missing"))
+    assert "viscous damping" in missing
+    assert "Coulomb" not in missing
+    assert any("instead of Coulomb friction" in line for line in said)

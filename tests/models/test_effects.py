@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion, harmonic_motion, sine_motion
@@ -299,6 +300,26 @@ def test_a_valve_that_closes_late_holds_the_limit_longer_and_slams():
     assert held[1] - held[0] == pytest.approx(lag, rel=0.15)
     jumps = [np.diff(f).max() for f in (at_once, late)]
     assert jumps[1] > 2.0 * jumps[0]
+
+
+def test_a_valve_s_resistance_deepens_the_limit_by_what_it_makes_up():
+    """From where suction meets the limit: m u' + c u = -limit + r (v - u), until flow turns."""
+    limit, resistance = 300.0, 1500.0
+    shape = {"limit": limit, "contact": 2000.0, "loss": 0.4, "refill": 1.0, "side": -1.0}
+    found = force(*LINEAR, FittedTerm("cavitation", 1.0, {**shape, "valve": resistance}))
+    t, whole = MOTION.time, force(*LINEAR)
+    opens = int(np.flatnonzero((whole[:-1] > -limit) & (whole[1:] <= -limit))[0])
+    open_to = opens + t.size // 6
+
+    def flow(time, u):
+        speed = np.interp(time, t, MOTION.velocity)
+        return (-limit + resistance * (speed - u) - 900.0 * u) / 200.0
+
+    span = t[opens:open_to]
+    fluid = solve_ivp(flow, span[[0, -1]], [MOTION.velocity[opens]], t_eval=span, rtol=1e-8).y[0]
+    expected = -limit + resistance * (MOTION.velocity[opens:open_to] - fluid)
+    assert expected.min() < -1.1 * limit
+    np.testing.assert_allclose(found[opens + 4 : open_to], expected[4:], atol=0.01 * limit)
 
 
 def test_a_valve_s_lag_moves_the_force_evenly():
