@@ -122,6 +122,11 @@ def with_curve_of(
     return fit_model(rows, solved.model, free_parameters(solved.model), iterations=0)
 
 
+def noise_alone(fit: ModelFit) -> bool:
+    """Tell whether the lines of what is left are noise alone."""
+    return fit.chi2 <= _LINES * fit.residual.size
+
+
 def _own_curve(
     rows: Sequence[RecordRows], fit: ModelFit, place: int, left: Sequence[Misfit]
 ) -> ModelFit:
@@ -143,7 +148,7 @@ def _own_curve(
             break
     met = [
         found for found, now in trials
-        if _met(now) and _noise(found) and _reverses(rows, found, place)
+        if _met(now) and noise_alone(found) and _reverses(rows, found, place)
         and _gap(now) < _CLEARER * _gap(left)
     ]
     return min(met, key=lambda f: f.chi2, default=fit)
@@ -204,12 +209,7 @@ def _shares(left: Sequence[Misfit]) -> Array:
 
 def _fine(fit: ModelFit, left: Sequence[Misfit]) -> bool:
     """Tell whether neither samples nor harmonics show that the curve is another one."""
-    return bool(_shares(left).max() <= _FINE**2) and _noise(fit)
-
-
-def _noise(fit: ModelFit) -> bool:
-    """Tell whether the lines of what is left are noise alone."""
-    return fit.chi2 <= _LINES * fit.residual.size
+    return bool(_shares(left).max() <= _FINE**2) and noise_alone(fit)
 
 
 def _met(left: Sequence[Misfit]) -> bool:

@@ -1,4 +1,7 @@
-"""A power law whose exponent is nearly whole: no measured flow tells it from that power."""
+"""A power law that stands for a whole power: no measured flow tells them apart.
+
+Its exponent is nearly whole, or beside friction's own curve linear damping leaves noise alone too.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +10,17 @@ from dataclasses import dataclass, replace
 
 from discover.gap.doubt import share_of
 from discover.gap.mending import mended
+from discover.gap.reversing import noise_alone
 from discover.naming.contest import Contest
 from discover.naming.evidence import odds_of_a_parameter
 from discover.naming.fit import ModelFit
 from discover.naming.rows import RecordRows
 
 POWER_LAW = "power-law-damping"
-_WHOLE = {"viscous-damping": 1.0, "quadratic-damping": 2.0}
+_LINEAR = "viscous-damping"
+_WHOLE = {_LINEAR: 1.0, "quadratic-damping": 2.0}
 _NEAR = 0.15  # of a whole power; that of turbulent flow in smooth pipes, 1.75, is further
+_LOW = 1.0  # exponent, below which a law is like friction's approach to its limit
 
 
 @dataclass(frozen=True)
@@ -56,11 +62,15 @@ def as_whole_power(
     """
     exponent = next(t.shape["exponent"] for t in fit.model.terms[::-1] if t.id == POWER_LAW)
     name = next((n for n, power in _WHOLE.items() if abs(exponent - power) < _NEAR), "")
+    near = bool(name)
+    name = _LINEAR if not near and exponent < _LOW else name
     if name not in effects or contest.best(name) is None:
         return None
     other = mended(rows, before, contest, name, None)
     tolerated = share_of(POWER_LAW) ** 2 * (before.chi2 - fit.chi2)
     if not other.chi2 - fit.chi2 < tolerated:
+        return None
+    if not near and not noise_alone(other):
         return None
     both = contest.probabilities[name] + contest.probabilities[POWER_LAW]
     odds = odds_of_a_parameter(contest.rows)
