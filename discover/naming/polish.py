@@ -21,6 +21,7 @@ _WIDTHS = (1.0 / 40.0, 1.0 / 160.0, 0.0)  # of a cycle, over which samples are a
 _EVEN, _HALF = 1.0, 0.5  # how evenly records count that differ in what they leave
 _CLOSED = 1.3  # times the noise, up to which nothing better is sought
 _FAR = 2.0  # likewise, from which another joint is
+_SOUGHT = 0.9  # of the gap, to which a search for another joint has to bring it, for one more
 _MOST = 1e12  # of mean squares
 
 
@@ -43,10 +44,15 @@ def polished(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     impacts = fit.model.terms[-1].shape.get("contact", 0.0) > 0.0
     if impacts and best.gap > _CLOSED:
         best = min(best, _Left.by(samples, _step_by_step(samples, best.fit)), key=_gap)
-    if impacts and best.gap > _FAR:
-        other = scattered(best.tolerated(_EVEN), best.fit, best.loudest)
+    for turn in range(_TURNS if impacts else 0):
+        before = best.gap
+        if before <= _FAR:
+            break
+        other = scattered(best.tolerated(_EVEN), best.fit, best.loudest, seed=turn)
         if other is not best.fit:
             best = min(best, _Left.by(samples, _step_by_step(samples, other)), key=_gap)
+        if best.gap > _SOUGHT * before:
+            break
     if best is begun:
         return fit
     return fit_model(rows, best.fit.model, best.fit.parameters, iterations=0)

@@ -30,9 +30,9 @@ _LOSSES = (0.02, 1.0)
 _LAGS = (0.01, 0.5)  # of a valve, over the greatest angular frequency
 _VALVES = (0.03, 3.0)  # its resistance, of the limit over the greatest speed
 _AT_ONCE = 0.3  # of the shapes, that a valve closes without a lag in, or lets through freely
-_SCATTERED = 10  # power of two, of shapes
-_EVOLVED = 32
-_GENERATIONS = 40
+_SCATTERED = (9, 10)  # power of two, of shapes: of a joint without and with a valve
+_EVOLVED = (24, 32)
+_GENERATIONS = (15, 40)
 _RANK_ON, _EVOLVE_ON = 2, 4  # records
 _STEPS = 6
 _ENOUGH = 0.003
@@ -40,7 +40,11 @@ _SHAKEN = 1e300  # chi-square where a joint shook itself apart
 
 
 def scattered(
-    samples: Sequence[RecordRows], fit: ModelFit, telling: Sequence[int] | NDArray[np.intp]
+    samples: Sequence[RecordRows],
+    fit: ModelFit,
+    telling: Sequence[int] | NDArray[np.intp],
+    *,
+    seed: int = 0,
 ) -> ModelFit:
     """Return the better of a fit and one whose joint was sought over all of its range.
 
@@ -52,6 +56,8 @@ def scattered(
         Its last term is the joint.
     telling : sequence of int
         Records that tell most, that first.
+    seed : int
+        Of the shapes that are tried.
     """
     *rest, joint = fit.model.terms
     if not joint.shape.get("contact", 0.0):
@@ -69,12 +75,13 @@ def scattered(
     def cost(point: Array) -> float:
         return more(model(point))
 
-    points = qmc.Sobol(box.size, seed=0).random_base2(_SCATTERED)
+    valve = int(bool(box.valves))
+    points = qmc.Sobol(box.size, seed=seed).random_base2(_SCATTERED[valve])
     first = np.array([few(model(p)) for p in points])
-    best = np.concatenate([[box.centre], points[np.argsort(first)[: _EVOLVED - 1]]])
+    best = np.concatenate([[box.centre], points[np.argsort(first)[: _EVOLVED[valve] - 1]]])
     evolved = differential_evolution(
-        cost, Bounds(np.zeros(box.size), np.ones(box.size)), maxiter=_GENERATIONS, init=best,
-        polish=False, tol=0.0, seed=0,
+        cost, Bounds(np.zeros(box.size), np.ones(box.size)), maxiter=_GENERATIONS[valve], init=best,
+        polish=False, tol=0.0, seed=seed,
     )
     other = model(evolved.x)
     found = fit_model(
