@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from models.constitutive import ForceModel
 from models.terms import TERMS
 
 _MOST_KEPT = 256e6  # bytes
+_THREADS = 2
 
 
 class CandidateColumns:
@@ -71,8 +73,8 @@ def _columns(
 ) -> Array:
     terms = [TERMS[p.id] for p in parts]
     shapes = [t.shape(p.shape) for t, p in zip(terms, parts, strict=True)]
-    blocks = []
-    for r in rows:
+
+    def block_of(r: RecordRows) -> Array:
         trial = Trial(r.observation, whole_model(r, model))
         there = [i for i, s in enumerate(shapes) if share_in(r.observation, s) > 0.0]
         forces = {i: trial.added(terms[i], shapes[i], parts[i].probe) for i in there}
@@ -85,8 +87,10 @@ def _columns(
                 block[on_cycle] = np.stack([forces[i] for i in on_cycle]) @ r.cycle_rows
             if at_samples:
                 block[at_samples] = r.project(np.stack([forces[i] for i in at_samples]))
-        blocks.append(block)
-    rows_of_parts = np.concatenate(blocks, axis=1)
+        return block
+
+    with ThreadPoolExecutor(_THREADS) as pool:  # products and joints leave the others running
+        rows_of_parts = np.concatenate(list(pool.map(block_of, rows)), axis=1)
     with np.errstate(over="ignore", invalid="ignore"):
         rows_of_parts[~np.isfinite(np.sum(rows_of_parts**2, axis=1))] = 0.0
     return rows_of_parts

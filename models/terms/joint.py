@@ -116,7 +116,9 @@ def _size(values: Array) -> float:
     return float(np.sqrt(values @ values / values.size))
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(  # type: ignore[untyped-decorator]
+    cache=True, fastmath=True, error_model="numpy", nogil=True
+)
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, spring: float, stiffness: float, damping: float, half: float,
