@@ -12,7 +12,7 @@ from discover.naming.evidence import Entry
 from discover.naming.fit import ModelFit, fit_model, free_parameters
 from discover.naming.forces import has_impacts, is_joint, of_each_test
 from discover.naming.polish import polished
-from discover.naming.refine import at_most_filtered, extended, pulls
+from discover.naming.refine import as_begun, at_most_filtered, extended, pulls
 from discover.naming.restart import best_range, restarted
 from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
@@ -36,6 +36,8 @@ def mended(
     entry = next(e for e in contest.entries if e.effects and e.effects[0] == name)
     model = extended(fit.model, entry) if begun is None else begun.model
     found = fit_model(rows, model, free_parameters(model))
+    if pulls(found.model.terms[len(fit.model.terms) :]):
+        found = as_begun(rows, model)
     if of_each_test(found.model, name):
         found = _shared(rows, fit, contest.starts[name], found)
     if name == "time-delay" and not of_each_test(found.model, name):
@@ -45,7 +47,8 @@ def mended(
     else:
         found = restarted(rows, found) if is_joint(name) else found
         found = polished(rows, found) if has_impacts(found.model) else found
-    return reversing_as_sampled(rows, found)
+    curved = reversing_as_sampled(rows, found)
+    return found if impossible(curved.model, name) else curved
 
 
 def _shared(

@@ -103,7 +103,7 @@ def refine(
                 instead[name] = others[0]
                 found = _best(rows, fit, others, 1, units, frozen)
             if pulls(found.model.terms[len(fit.model.terms) :]):
-                found = _as_begun(rows, extended(fit.model, starts[0]), units)
+                found = as_begun(rows, extended(fit.model, starts[0]), units)
             impossible = pulls(found.model.terms[len(fit.model.terms) :])
             if impossible or not np.isfinite(found.chi2) or is_a_spring(rows, found.model):
                 passed_over.append(name)
@@ -169,7 +169,9 @@ def _best(
     return best
 
 
-def _as_begun(rows: Sequence[RecordRows], model: ForceModel, units: UnitRows) -> ModelFit:
+def as_begun(
+    rows: Sequence[RecordRows], model: ForceModel, units: UnitRows | None = None
+) -> ModelFit:
     """Return the fit of a model whose last term keeps its shape: free, it ran to a wrong sign."""
     last = len(model.terms) - 1
     free = tuple(p for p in free_parameters(model) if p.shape is None or p.term < last)
