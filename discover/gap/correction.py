@@ -8,7 +8,7 @@ was named. Seals' friction follows none either: at last a curve of its own is tr
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,7 +28,6 @@ _POWERS = {
     "asymmetric-damping": (0.5, 1.0, 1.5, 2.0, 3.0),
     "position-dependent-friction": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0),
 }
-_FRICTION = "coulomb-friction"
 _SIDES = (0.0, 1.0, -1.0)
 _CLOSE = 1.1  # times the noise floor, up to which no curve is corrected
 _WORTH = 0.05  # of the gap of records that were left out, that a correction has to close
@@ -44,9 +43,11 @@ class Correction:
     """Curves that differ from their formulas."""
 
     effects: tuple[str, ...]
-    """Whose: once for each member that was added beside its formula, or for friction's curve."""
+    """Whose: once for each member that was added beside its formula."""
     stage: Stage
     """After it."""
+    reversal: bool = False
+    """Whether friction has come to reverse along a curve of its own."""
 
 
 def corrected(
@@ -165,7 +166,9 @@ def reversal_corrected(
             best, nearest = trial, gap
         if nearest <= _CLOSE * floor:
             break
-    return None if best is None else _kept(rows, fitted, [*before, _FRICTION], best)
+    if best is None:
+        return None
+    return replace(_kept(rows, fitted, before, best), reversal=True)
 
 
 def _of_fitted(rows: Sequence[RecordRows], now: Stage) -> list[Misfit]:

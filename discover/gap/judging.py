@@ -83,8 +83,8 @@ def one_stands_out(
     if len(fitted) < _SEVERAL:
         return False
     before = misfits(fitted, at.fit)
-    beyond = before - np.array([r.target.size for r in fitted])
-    if contest.excess >= float(beyond.max()):
+    above = before - np.array([r.target.size for r in fitted])
+    if contest.excess >= float(above.max()):
         return False
     named = fits.get(contest.ranked[0][0])
     if named is None:

@@ -26,11 +26,14 @@ class CorrectedCurve:
     """Percent by the formulas alone, fitted records."""
     unseen: float | None
     """Likewise, on records that were not fitted."""
+    reversal: bool = False
+    """Whether friction has come to reverse along a curve of its own."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document's entry."""
         return {
             "effects": list(self.effects),
+            "reversal": self.reversal,
             "gap_by_formula_percent": self.gap,
             "held_out_by_formula_percent": self.unseen,
         }

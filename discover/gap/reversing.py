@@ -86,7 +86,8 @@ def curves_of_its_own(rows: Sequence[RecordRows], fit: ModelFit) -> Iterator[Mod
     for own in (_KNEE, *(two for speed in speeds for two in _in_two_parts(speed))):
         model = _model_with(fit, place, {**curve, **own})
         found = fit_model(rows, model, free_parameters(model), iterations=_STEPS)
-        if _reverses(rows, found, place):
+        wide = _curve(found, place)["transition_speed"] > WIDEST * _fastest(rows)
+        if _reverses(rows, found, place) and not (wide and own == _KNEE):
             yield found
 
 
@@ -160,7 +161,11 @@ def _reverses(rows: Sequence[RecordRows], fit: ModelFit, place: int) -> bool:
     if curve["other_share"] == 0.0:
         return True
     less, more = sorted((curve["transition_speed"], curve["other_speed"]))
-    return more < min(_FARTHEST * less, WIDEST * max(r.sizes["speed"] for r in rows))
+    return more < min(_FARTHEST * less, WIDEST * _fastest(rows))
+
+
+def _fastest(rows: Sequence[RecordRows]) -> float:
+    return max(r.sizes["speed"] for r in rows)
 
 
 def _as_sampled(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,8 +11,8 @@ from discover.gap.correction import Correction, with_member
 from discover.gap.doubt import Doubt, share_of, within_doubt
 from discover.gap.judging import beyond, helps, one_stands_out, predicts, shows
 from discover.gap.mending import impossible, mended, without_superfluous
-from discover.gap.reversing import with_curve_of
-from discover.gap.stages import Stage, stage, without
+from discover.gap.reversing import noise_alone, with_curve_of
+from discover.gap.stages import Stage, seen_gap, stage, without
 from discover.gap.whole_power import POWER_LAW, as_whole_power
 from discover.naming.ahead import every_joint, pairs_ahead
 from discover.naming.columns import CandidateColumns
@@ -27,6 +27,7 @@ from models.checks import Array
 _TOO_LITTLE = 0.02  # of the misfit, that an effect has to explain
 _FEWEST = 20.0  # of chi-square, that an effect has to explain
 _SURE = 0.99  # that it is no entry's, where nothing will be added
+_NO_WORSE = 1.02  # times the gap, that another name may leave
 _AGAIN = 8  # effects, that are weighed again where friction's curve is known better
 
 
@@ -44,6 +45,10 @@ class Round:
     """With its formula."""
     dropped: tuple[str, ...] = ()
     """Effects of earlier rounds that it made superfluous."""
+    instead_of: str = ""
+    """One of these, for whose force it is a better name."""
+    beside: ModelFit | None = None
+    """The model without either then."""
     corrected: Correction | None = None
     """Of the curves of all that was added so far, where formulas do not follow them."""
 
@@ -63,8 +68,11 @@ class Open:
     """What a round may still do."""
 
     effects: Sequence[str]
+    """Ids that may be named."""
     rounds: Sequence[Round]
+    """That were made."""
     more: bool
+    """Whether there may be another one."""
     curves: bool
     """Whether the curves of what was added may explain more than a further effect."""
     deep: bool
@@ -123,7 +131,10 @@ def within(
     rows: Sequence[RecordRows], now: Stage, rounds: Sequence[Round], given: Doubt
 ) -> bool:
     """Tell whether no more is left than the shapes of what was added may be wrong by."""
-    done = [(r.effect, r.before, r.after) for r in rounds]
+    names = {r.instead_of: r.effect for r in rounds if r.instead_of}
+    done = [
+        (names.get(r.effect, r.effect), r.before, r.after) for r in rounds if not r.instead_of
+    ]
     return bool(done or given.square > 0.0) and within_doubt(rows, now, given, done)
 
 
@@ -162,30 +173,44 @@ def exchanged(
     now: Stage,
     left: Open,
     doubt: Array,
+    doubts: Mapping[str, Array],
 ) -> Round | None:
     """Return a round that names a force of an earlier round anew, beside what was found since.
 
     A name that was given while more was missing may have made up for that. None where all names
-    stay, or behind a joint, where weighing takes long.
+    stay, where no round is left, or behind a joint, where weighing takes long. The last round's
+    name was given beside all the others.
     """
     if not left.more or has_joint(now.fit.model):
         return None
     adding = {t.id for t in now.fit.model.terms if t.term.acts == "force"}
-    for name in [r.effect for r in left.rounds[:-1] if r.effect in adding]:
+    for done in [r for r in left.rounds[:-1] if r.effect in adding]:
+        name = done.effect
         less = without(now.fit.model, name)
         fit = fit_model(fitted, less, free_parameters(less))
-        contest, fits = weighed(fitted, fit, [*left.effects, name], doubt, left.columns)
-        other = contest.ranked[0][0]
-        if other in (AGREES, UNKNOWN, name):
+        also = replace(left, effects=[*left.effects, name], curves=False)
+        others = doubt - doubts.get(name, 0.0)
+        contest, fits = weighed(fitted, fit, also.effects, others, left.columns)
+        first = contest.ranked[0][0]
+        if first in (AGREES, UNKNOWN) or (first == name != POWER_LAW):
             continue
-        before = stage(rows, fit)
-        found = _tried(
-            rows, fitted, before, replace(left, curves=False), contest, fits.get(other), other
-        ).added
-        tolerated = share_of(name) ** 2 * (fit.chi2 - now.fit.chi2)
-        if found is not None and found.stage.fit.chi2 - now.fit.chi2 < tolerated:
-            return replace(found, before=now, dropped=(name, *found.dropped))
+        bare = stage(rows, fit)
+        found = _tried(rows, fitted, bare, also, contest, fits.get(first), first).added
+        if found is None or found.effect == name or not _as_good(rows, now, found.stage, done):
+            continue
+        dropped = (name, *found.dropped)
+        return replace(found, before=now, dropped=dropped, instead_of=name, beside=fit)
     return None
+
+
+def _as_good(rows: Sequence[RecordRows], now: Stage, other: Stage, done: Round) -> bool:
+    """Tell whether a stage without a round's effect leaves no more than that may be wrong by."""
+    explained = done.before.fit.chi2 - done.stage.fit.chi2
+    less = other.fit.chi2 - now.fit.chi2
+    if less > share_of(done.effect) ** 2 * explained and not noise_alone(other.fit):
+        return False
+    closed = seen_gap(rows, other) <= _NO_WORSE * seen_gap(rows, now)
+    return closed and predicts(rows, now, other)
 
 
 def _tried(
@@ -232,8 +257,8 @@ def weighed(
     `doubt` is what of each record's chi-square the shapes of what was added may be wrong by.
     `settled`: nothing will be added, so what hardly anything explains is not looked at closer.
     """
-    beyond = misfits(rows, fit) - np.array([r.target.size for r in rows])
-    tolerated = float(np.sum(np.minimum(doubt, np.maximum(beyond, 0.0))))
+    above = misfits(rows, fit) - np.array([r.target.size for r in rows])
+    tolerated = float(np.sum(np.minimum(doubt, np.maximum(above, 0.0))))
     contest = run_contest(rows, fit, effects, tolerated=tolerated, columns=columns)
     if settled and contest.probabilities[UNKNOWN] > _SURE:
         return contest, {}

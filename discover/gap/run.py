@@ -204,7 +204,10 @@ def _named(baseline: Baseline, entry: Round) -> NamedEffect:
         unseen=(_unseen(before), _unseen(after)),
         dropped=entry.dropped,
         corrected=None if entry.corrected is None else CorrectedCurve(
-            entry.corrected.effects, seen_gap(baseline.rows, entry.stage), _unseen(entry.stage)
+            entry.corrected.effects,
+            seen_gap(baseline.rows, entry.stage),
+            _unseen(entry.stage),
+            entry.corrected.reversal,
         ),
     )
 

@@ -25,6 +25,7 @@ from discover.naming.contest import Contest
 from discover.naming.evidence import UNKNOWN
 from discover.naming.fit import fit_model, free_parameters, misfits
 from discover.naming.forces import has_joint
+from models.checks import Array
 
 MOST_ROUNDS = 6
 _MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
@@ -83,12 +84,14 @@ def search(
     rounds: list[Round] = []
     tried: set[str] = set()
     given = doubt_of_added(baseline, fit)
-    doubt, members, curves = given.by_record, 0, True
+    doubts: dict[str, Array] = {}  # chi-square by record that each effect's shape may be wrong by
+    members, curves = 0, True
     deep, contest = True, None
     columns = CandidateColumns(fitted)
     while True:
         now = rounds[-1].after if rounds else first
         present = {t.id for t in now.fit.model.terms}
+        doubt = np.sum([given.by_record, *doubts.values()], axis=0)
         open_effects = [e for e in effects if e not in present and e not in tried]
         if contest is None:
             settled = within(rows, now, rounds, given)
@@ -111,11 +114,13 @@ def search(
                 deep = True
                 continue
             better = reversal_corrected(rows, fitted, now, rounds[-1].members) if rounds else None
-            added = exchanged(rows, fitted, now, left, doubt) if better is None else None
+            added = exchanged(rows, fitted, now, left, doubt, doubts) if better is None else None
         if added is not None:
             curves, deep, contest = True, False, None
-            gained = misfits(fitted, now.fit) - misfits(fitted, added.stage.fit)
-            doubt = doubt + share_of(added.effect) ** 2 * np.maximum(gained, 0.0)
+            without = added.beside or now.fit
+            explained = misfits(fitted, without) - misfits(fitted, added.stage.fit)
+            doubts[added.effect] = share_of(added.effect) ** 2 * np.maximum(explained, 0.0)
+            doubts.pop(added.instead_of, None)
             tried |= set(added.dropped)
             rounds.append(added)
             if tell is not None:
@@ -124,6 +129,8 @@ def search(
         elif better is not None:
             members += len(better.effects) - len(rounds[-1].members)
             deep, contest = False, None
-            rounds[-1] = replace(rounds[-1], corrected=better)
+            earlier = rounds[-1].corrected
+            kept = better.reversal or (earlier is not None and earlier.reversal)
+            rounds[-1] = replace(rounds[-1], corrected=replace(better, reversal=kept))
         else:
             return Search(start, refitted, tuple(rounds), found.contest, found.rejected)

@@ -89,7 +89,8 @@ def _columns(
                 block[at_samples] = r.project(np.stack([forces[i] for i in at_samples]))
         return block
 
-    with ThreadPoolExecutor(_THREADS) as pool:  # products and joints leave the others running
+    # Products and joints let others run; nothing says that a user's own term may be shared.
+    with ThreadPoolExecutor(1 if any(t.source for t in terms) else _THREADS) as pool:
         rows_of_parts = np.concatenate(list(pool.map(block_of, rows)), axis=1)
     with np.errstate(over="ignore", invalid="ignore"):
         rows_of_parts[~np.isfinite(np.sum(rows_of_parts**2, axis=1))] = 0.0

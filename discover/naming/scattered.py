@@ -121,7 +121,7 @@ class _Box:
         """Return the box around a joint."""
         names = [*(n for n in _NEAR if joint.shape.get(n, 0.0) > 0.0), "loss"]
         valves = {}
-        if "lag" in joint.shape:
+        if joint.shape.get("refill", 0.0) > 0.0:
             resistance = joint.shape["limit"] / scales.speed
             valves["lag"] = _LAGS[0] / scales.omega, _LAGS[1] / scales.omega
             valves["valve"] = _VALVES[0] * resistance, _VALVES[1] * resistance
@@ -159,8 +159,7 @@ class _Box:
             elif name in self.valves:
                 low, high = np.log(self.valves[name])
                 share = (place - _AT_ONCE) / (1.0 - _AT_ONCE)
-                there = found["refill"] > 0.0 and share > 0.0
-                found[name] = float(np.exp(low + share * (high - low))) if there else 0.0
+                found[name] = float(np.exp(low + share * (high - low))) if share > 0.0 else 0.0
             else:
                 found[name] *= float(_NEAR[name] ** (2.0 * place - 1.0))
         return found

@@ -119,10 +119,11 @@ def _corrected(entry: Mapping[str, Any] | None) -> str:
         return ""
     counts = Counter(str(e) for e in entry["effects"])
     terms = [
-        "friction reverses along a curve of its own" if name == "coulomb-friction" else
         f"the curve of {short_name(name)} takes {number} more {'term' if number == 1 else 'terms'}"
         for name, number in counts.items()
     ]
+    if entry.get("reversal"):
+        terms.append("friction reverses along a curve of its own")
     return f" ({percent(entry['gap_by_formula_percent'])} by formula; {listed(terms)})"
 
 

@@ -48,7 +48,7 @@ class Joint:
     lag: float = 0.0
     """s that the valve takes to close, once the flow through it has turned."""
     valve: float = 0.0
-    """N s/m of its resistance, by which the limit deepens as it makes up more."""
+    """N s/m of its resistance, by which the limit deepens as more is made up."""
     half_load: float = 0.0
     """N of force that makes half of the spring's change under load; 0 for a linear one."""
     load_share: float = 0.0
@@ -138,7 +138,7 @@ def _step(
     rate, turned_for = 0.0, -1.0  # the valve's time; -1 where it is closed
     before = np.zeros((3, 2))  # what the last cycles began with
     known = 0  # of them
-    limit = 0.0
+    limit = held_open = 0.0
     for turn in range(passes + 1 if start > 0 else passes):
         was, was_speed = position - x[0] + slipped, speed
         deepest = 0.0
@@ -185,9 +185,17 @@ def _step(
                 if refilled == 1 and (turned_for >= 0.0 or force < lower or force > upper):
                     if turned_for < 0.0:
                         turned_for, limit = 0.0, lower if force < lower else upper
-                    back = (pace - now) if limit == lower else (now - pace)
+                        force = limit
+                    else:
+                        force = held_open
+                    # spring and valve in series, implicitly: a valve never adds to the suction
+                    bent_by = stiffness * h
+                    force = valve * (force + bent_by * (pace - now)) + bent_by * limit
+                    force /= valve + bent_by
+                    held_open = force
+                    flow = (force - limit) / valve if valve > 0.0 else pace - now
+                    back = flow if limit == lower else -flow
                     turned_for = turned_for + h if back > 0.0 else 0.0
-                    force = limit + valve * (pace - now)
                     if turned_for > lag:
                         gained = (pace - now) * min(turned_for - lag, h)
                         slipped = end - position - force / stiffness - gained

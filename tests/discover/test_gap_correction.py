@@ -289,6 +289,7 @@ def test_friction_takes_a_curve_of_its_own_where_nothing_more_is_missing():
     (only,) = found.rounds
     assert only.effect == "series-compliance"
     assert only.corrected is not None
-    assert only.corrected.effects == ("coulomb-friction",)
+    assert only.corrected.reversal
+    assert only.corrected.effects == ()
     assert found.final_held_out_gap_percent < 1.3 * found.noise_percent
     assert only.corrected.unseen > 1.5 * found.noise_percent

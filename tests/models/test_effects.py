@@ -322,6 +322,20 @@ def test_a_valve_s_resistance_deepens_the_limit_by_what_it_makes_up():
     np.testing.assert_allclose(found[opens + 4 : open_to], expected[4:], atol=0.01 * limit)
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("contact", [60.0, 2000.0])
+def test_a_valve_only_relieves_however_narrow_it_is(contact, side):
+    """Between a limit that holds and oil that never tears, whose damping it lacks (3 %)."""
+    shape = {"limit": 300.0, "contact": contact, "loss": 0.4, "refill": 1.0, "side": side}
+    least = [
+        -np.max(side * force(*LINEAR, FittedTerm("cavitation", 1.0, {**shape, "valve": valve})))
+        for valve in (0.0, 1e3, 1e4, 1e5, 1e7)
+    ]
+    whole = force(*LINEAR, FittedTerm("cavitation", 1.0, {**shape, "limit": 1e6}))
+    assert np.all(np.diff(least) < 0.0)
+    assert least[-1] > -1.05 * np.max(side * whole)
+
+
 def test_a_valve_s_lag_moves_the_force_evenly():
     """Between two samples too: what is fitted has to follow it."""
     shape = {"limit": 300.0, "contact": 600.0, "loss": 0.4, "refill": 1.0, "side": -1.0}
