@@ -13,6 +13,7 @@ _NAMES = {
     "quadratic-damping": "quadratic damping, v|v|",
     "power-law-damping": "power-law damping, |v|ᵖ",
     "coulomb-friction": "Coulomb friction, sign v",
+    "stribeck-friction": "Stribeck friction",
     "force-offset": "force offset",
     "time-delay": "delay between channels",
 }

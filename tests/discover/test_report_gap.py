@@ -37,7 +37,7 @@ def test_page_is_self_contained_and_carries_each_part():
 def test_lines_name_effects_with_alternatives_and_both_gaps():
     lines = [line.replace("\u202f", " ") for line in gap_lines(sample_gap_document())]
     assert lines[1] == "Missing: Coulomb friction 93 % and force offset > 99 %."
-    assert "93 %, or stribeck friction (6 %); gap 18.3 % to 2.4 %" in lines[2]
+    assert "93 %, or Stribeck friction (6 %); gap 18.3 % to 2.4 %" in lines[2]
     assert lines[4] == (
         "Gap: 18.3 % before, 1.2 % after; 1.3 % on records that were not fitted; noise floor 1.1 %."
     )
@@ -73,7 +73,7 @@ def test_lines_say_what_is_not_told_apart_and_what_refitting_alone_closed():
     first = {**document["rounds"][0], "not_distinguishable_from": ["stribeck-friction"]}
     document |= {"rounds": [{**first, "gap_before_percent": 8.0}], "final_gap_percent": 1.3}
     lines = [line.replace("\u202f", " ") for line in gap_lines(document)]
-    assert "Coulomb friction 93 % (or stribeck friction: not told apart)" in lines[1]
+    assert "Coulomb friction 93 % (or Stribeck friction: not told apart)" in lines[1]
     assert "18.3 % as given, 8 % with the model's own coefficients refitted, 1.3 %" in lines[3]
     assert "what the named shapes may be wrong by" in lines[0]  # 1.3 % is more than 1.1 % of noise
 
