@@ -92,7 +92,10 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
     rounds = document["rounds"]
     if not rounds:
         return None
-    names = ["baseline", *("+ " + r["effect"].replace("-", "-\n") for r in rounds)]
+    names = ["baseline"]
+    for r in rounds:
+        instead = "\ninstead" if r.get("dropped") else ""
+        names.append("+ " + r["effect"].replace("-", "-\n") + instead)
     with house_style():
         figure = new_figure(620, 290)
         axes = figure.add_subplot()

@@ -98,6 +98,8 @@ def _missing(entry: Mapping[str, Any]) -> str:
 
 def _round(entry: Mapping[str, Any]) -> str:
     text = f"{short_name(str(entry['effect']))} {probability(entry['probability'])}"
+    if entry.get("dropped"):
+        text += f" instead of {listed([short_name(str(e)) for e in entry['dropped']])}"
     others = [
         f"{short_name(str(a['effect']))} ({probability(a['probability'])})"
         for a in entry.get("alternatives", ())
@@ -105,8 +107,6 @@ def _round(entry: Mapping[str, Any]) -> str:
     ]
     if others:
         text += f", or {listed(others, last='or')}"
-    if entry.get("dropped"):
-        text += f", instead of {listed([short_name(str(e)) for e in entry['dropped']])}"
     return (
         f"{text}; gap {percent(entry['gap_before_percent'])} to"
         f" {percent(entry['gap_after_percent'])}{_corrected(entry.get('corrected'))}"

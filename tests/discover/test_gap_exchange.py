@@ -80,7 +80,7 @@ def test_another_name_has_to_leave_as_little(exponent, good):
 
 
 def test_a_search_ends_with_viscous_damping_where_a_small_offset_had_hidden_it():
-    """Beside the offset friction's curve left more than noise, and a power of 0.25 was certain."""
+    """Beside the offset friction's curve left more than noise, and a power of 0.25 was kept."""
     def law(t, x, v, a):
         seals = 2.0 / np.pi * (0.6 * np.arctan(v / 3e-4) + 0.4 * np.arctan(v / 24e-4))
         return 120.0 * a + 150.0 * v + 6000.0 * v * np.abs(v) + 200.0 * seals + 1.5
