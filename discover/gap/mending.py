@@ -77,8 +77,11 @@ def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     """Return the fit with the delay made as its samples tell: its lines hardly do."""
     best, gap = fit, _CLEARER * pooled([record_misfit(r, fit.model) for r in rows])
     *others, delay = fit.model.terms
-    for degree in (1.0, 3.0):
-        late = FittedTerm(delay.id, delay.coefficient, {**delay.shape, "resampled": degree})
+    made = [{"resampled": degree, "filter_order": 0.0} for degree in (1.0, 3.0)]
+    if delay.coefficient > 0.0:
+        made += [{"resampled": 0.0, "filter_order": order} for order in (1.0, 2.0, 4.0)]
+    for shape in made:
+        late = FittedTerm(delay.id, delay.coefficient, {**delay.shape, **shape})
         model = ForceModel((*others, late), fit.model.name)
         trial = fit_model(rows, model, free_parameters(model))
         now = pooled([record_misfit(r, trial.model) for r in rows])

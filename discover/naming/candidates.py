@@ -144,12 +144,15 @@ def _delay(scales: Scales) -> list[Variant]:
     made = ((0, 0.0), (1, 1.0), (1, 3.0))  # sampled later, or aligned from samples
     rates = (0.0, scales.sampling) if scales.sampling else (0.0,)
     probe = 0.02 / scales.omega
-    return [
+    sampled = [
         _one("time-delay", shapes + (rate > 0.0), probe, resampled=degree,
              sampling=rate)
         for rate in rates
         for shapes, degree in made
-    ] + _each_its_own([[Part("time-delay", {"only": n}, probe) for n in _numbers(scales)]])
+    ]
+    filtered = [_one("time-delay", 1, probe, filter_order=order) for order in (1.0, 2.0, 4.0)]
+    own = [[Part("time-delay", {"only": n}, probe) for n in _numbers(scales)]]
+    return sampled + filtered + _each_its_own(own)
 
 
 def _compliance(scales: Scales) -> list[Variant]:
@@ -328,8 +331,16 @@ def _gain(scales: Scales) -> list[Variant]:
         _one("sensor-gain", 1, 1e-3, side=1.0, filter_time=float(t / scales.omega))
         for t in np.geomspace(0.01, 1.0, 8)
     ]
+    drooping = [
+        _one("sensor-gain", 1, -1e-3, side=1.0, droop_time=float(t / scales.slowest))
+        for t in np.geomspace(0.3, 12.0, 10)
+        if scales.slowest > 0.0
+    ]
+    loaded = [
+        _one("sensor-gain", 0, 1e-3, side=1.0, load=scales.force, load_power=p) for p in (1.0, 2.0)
+    ]
     between = _between_tests("sensor-gain", scales)
-    return uniform + ranges + one_way + filtered + changed + settling + between
+    return uniform + ranges + one_way + filtered + drooping + loaded + changed + settling + between
 
 
 def _clipping(scales: Scales) -> list[Variant]:

@@ -31,7 +31,7 @@ from discover.naming.evidence import (
     usual_left,
 )
 from discover.naming.fit import ModelFit, kind_of, telling
-from discover.naming.forces import MOST_FILTERED, behind_filter, in_record, is_joint, is_sensor
+from discover.naming.forces import coefficient_bounds, in_record, is_joint, is_sensor
 from discover.naming.pairs import pairs_with, unlikely
 from discover.naming.reversal import other_reversals, reversal_doubt
 from discover.naming.rows import RecordRows
@@ -46,6 +46,7 @@ _PAIR_CANDIDATES = 6
 _COLLINEAR = 1e-6
 _BUT_THE_CURVE = 0.1  # of the misfit, left beside the doubt of friction's curve: nearly all is it
 _AN_ANSWER = 0.05
+_OFF_GRID = 4.0  # times the greatest loss: beside a model without it a straight line promises more
 _UNEVEN = 5
 _TELLING = 4  # records, by which joints are chosen that are tried on all
 _OF_A_KIND = 6  # joints, that are
@@ -268,7 +269,10 @@ def _single(
     solution = np.linalg.lstsq(gram, freed @ target, rcond=1e-10)[0]
     if TERMS[v.effect].nonnegative and np.any(solution <= 0.0):
         return None
-    if behind_filter(v.parts[0].shape) and abs(solution[0]) > MOST_FILTERED:
+    shape = v.parts[0].shape
+    low, high = coefficient_bounds(shape)
+    low *= _OFF_GRID if shape.get("droop_time", 0.0) > 0.0 else 1.0
+    if not low <= solution[0] <= high:
         return None
     now = chi2 - float(solution @ (freed @ target))
     value = evidence(now, len(v.parts) + v.shapes) - unusual(v.parts[0].shape)

@@ -13,9 +13,8 @@ import numpy as np
 
 from discover.naming.forces import (
     DELAY,
-    MOST_FILTERED,
     adds_up,
-    behind_filter,
+    coefficient_bounds,
     is_joint,
     is_sensor,
     share_in,
@@ -26,7 +25,8 @@ from models.checks import Array
 from models.constitutive import WHOLE_ORDERS, FittedTerm, ForceModel
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "resampled",
-                 "one_way", "from_test", "over", "only", "sampling")
+                 "one_way", "from_test", "over", "only", "sampling", "filter_order",
+                 "load", "load_power")
 _APART = 0.1  # of orders and powers: a free one from the whole ones in the same model
 _WHOLE_POWERS = {"viscous-damping": 1.0, "quadratic-damping": 2.0}
 _STEP = 1e-4  # of a value, for its tangent
@@ -198,9 +198,9 @@ def _bounded(
     for index, parameter in enumerate(parameters):
         fitted = model.terms[parameter.term]
         if parameter.shape is None:
-            if behind_filter(fitted.shape):
-                most = max(MOST_FILTERED, abs(fitted.coefficient))  # a given one may be greater
-                result[index] = np.clip(values[index], -most, most)
+            low, high = coefficient_bounds(fitted.shape)
+            given = fitted.coefficient  # may be beyond
+            result[index] = np.clip(values[index], min(low, given), max(high, given))
             continue
         known = next(p for p in fitted.term.parameters if p.name == parameter.shape)
         old = value_of(model, parameter)

@@ -14,7 +14,7 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
 from models.terms import TERMS, ForceOf, Shape, Term
-from models.terms.sensor_gain import low_passed_cycle
+from models.terms.low_pass import earlier, low_passed_cycle
 from models.terms.time_delay import between_samples, delay_at
 
 DELAY = "time-delay"
@@ -24,7 +24,6 @@ _RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant 
 _REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ
 _MOST_MISSING = 16  # samples in a row
 _MOST_KNOWN = 128  # cycles, of which the last force is remembered
-_EARLIER = np.polynomial.laguerre.laggauss(6)  # moments in time constants, and their weights
 
 
 def needs_cycle(term: Term, shape: Shape) -> bool:
@@ -38,11 +37,20 @@ def behind_filter(shape: Shape) -> bool:
     return shape.get("filter_time", 0.0) > 0.0
 
 
+def coefficient_bounds(shape: Shape) -> tuple[float, float]:
+    """Return between what a coefficient lies where a sensor's shape bounds it."""
+    if behind_filter(shape):
+        return -MOST_FILTERED, MOST_FILTERED
+    if shape.get("filter_order", 0.0) > 0.0:
+        return 0.0, np.inf
+    return (-1.0, 0.0) if shape.get("droop_time", 0.0) > 0.0 else (-np.inf, np.inf)
+
+
 def adds_up(term: Term, shape: Shape) -> bool:
     """Tell whether a sensor makes of a sum of forces the sum of what it makes of each."""
     if term.id == DELAY:
         return True
-    part = shape.get("one_way", 0.0) > 0.0 or shape.get("threshold", 0.0) > 0.0
+    part = any(shape.get(name, 0.0) > 0.0 for name in ("one_way", "threshold", "load_power"))
     return term.id == "sensor-gain" and not part and shape.get("side", 1.0) >= 0.0
 
 
@@ -178,14 +186,21 @@ def _force(observation: Observation, model: ForceModel) -> Array:
         rest = ForceModel(tuple(t for t in model.terms if t not in filtered))
         force = _force(observation, rest)
         for t in filtered:
-            force = force + t.coefficient * _low_passed(observation, rest, t.shape["filter_time"])
+            passed = _low_passed(observation, rest, t.shape["filter_time"])
+            force = force + t.coefficient * passed
         return force
     delays = [t for t in model.terms if t.id == DELAY]
     if delays and observation.at is not None:
         rest = ForceModel(tuple(t for t in model.terms if t.id != DELAY))
         step = observation.motion.step
         delay = sum(delay_at(step, t.coefficient, t.shape) for t in delays)
-        degree = int(max(t.shape.get("resampled", 0.0) for t in delays))
+        degree, order = (
+            int(max(t.shape.get(name, 0.0) for t in delays))
+            for name in ("resampled", "filter_order")
+        )
+        if order and delay > 0.0:
+            lasting, steady = (_force(observation, m) for m in (rest, steady_part(rest)))
+            return _low_passed(observation, rest, delay, order) + lasting - steady
         if degree:
             return _aligned(observation, rest, delay, degree)
         return _force(_at(observation, observation.motion.time - delay), rest)
@@ -221,18 +236,21 @@ def _at(observation: Observation, time: Array) -> Observation:
     return replace(observation, motion=observation.at(time))
 
 
-def _low_passed(observation: Observation, model: ForceModel, time_constant: float) -> Array:
-    """Return the force behind a low-pass of first order, at a sine test's samples.
+def _low_passed(
+    observation: Observation, model: ForceModel, delay: float, order: int = 1
+) -> Array:
+    """Return the steady force behind a low-pass that delays slow forces, at a sine test's samples.
 
     The cycle's grid shows it where it is fine enough. Otherwise the force of earlier moments is
-    summed with exponential weights, by Gauss's rule for them.
+    summed.
     """
+    model = steady_part(model)
     cycle, time = observation.cycle, observation.motion.time
-    if cycle is not None and time_constant > _RESOLVED * cycle.step:
-        force = steady_part(model).force(cycle)
-        return _from_cycle(observation, low_passed_cycle(force, cycle.step, time_constant))
-    ago, weights = _EARLIER
-    moments = time - time_constant * ago[:, None]
+    if cycle is not None and delay > _RESOLVED * cycle.step:
+        passed = low_passed_cycle(model.force(cycle), cycle.step, delay, order)
+        return _from_cycle(observation, passed)
+    ago, weights = earlier(order)
+    moments = time - delay * ago[:, None]
     if any(t.id == DELAY for t in model.terms):  # by samples that follow each other
         return np.asarray(weights @ [_force(_at(observation, at), model) for at in moments])
     forces = _force(_at(observation, moments.ravel()), model)

@@ -28,6 +28,8 @@ class Scales:
     """s, longest record."""
     omega: float
     """rad/s, highest."""
+    slowest: float
+    """rad/s, lowest."""
     numbers: tuple[int, ...] = ()
     """Of the tests that are fitted, in the campaign; 0 where it is not known."""
     reversal: float = 0.0
@@ -46,13 +48,15 @@ def scales_of(observations: Sequence[Observation], reversal: float = 0.0) -> Sca
     peaks = sorted(float(np.abs(o.measured).max()) for o in observations)
     steps = [o.motion.step for o in observations]
     fastest, slowest = min(steps), max(steps)
+    omegas = [2.0 * np.pi * float(w.frequency) for o in observations for w in o.windows]
     return Scales(
         speed=max(float(np.abs(o.motion.velocity).max()) for o in observations),
         displacement=max(float(np.abs(o.motion.displacement).max()) for o in observations),
         force=peaks[-1],
         peaks=tuple(peaks),
         duration=max(float(o.time[-1] - o.time[0]) for o in observations),
-        omega=max(float(w.frequency) for o in observations for w in o.windows) * 2.0 * np.pi,
+        omega=max(omegas),
+        slowest=min(omegas),
         numbers=tuple(o.test for o in observations),
         reversal=reversal,
         sampling=0.0 if slowest < _ANOTHER_RATE * fastest else 1.0 / fastest,

@@ -1,14 +1,14 @@
 """Sensor gain: the force channel reads too much or too little.
 
-Throughout, in a range of the amplifier, one way, behind a filter, from a test on, more with every
-test, or more and more during a record.
+Throughout, in a range of the amplifier, one way, with load, behind a filter, from a test on, more
+with every test, or more and more during a record; or it loses what lasts.
 """
 
 import numpy as np
-from scipy.signal import lfilter
 
 from models.checks import Array
 from models.motion import Motion
+from models.terms.low_pass import low_passed
 from models.terms.term import ForceOf, Parameter, Shape, Term
 
 
@@ -19,6 +19,10 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     negative. With `one_way` 1 the gain is that of tension (`side` 1) or compression (-1) only.
     With `filter_time` T (s) above 0 the part g passes a low-pass of first order with that time
     constant: slow forces read 1 + g times themselves, fast ones less of g, and late.
+    With `droop_time` T (s) above 0 it does so too, and g is a loss, as of a charge amplifier or an
+    AC-coupled channel (g = -1): slow forces read too little and early.
+    With `load_power` p above 0 the part g is that at a force of `load` (N), and goes with the
+    force's size to the power p: a cell that is not linear.
     A gain that is there from a campaign's test number `from_test` on, and grows for `over` tests
     until it is whole, can't be told from the motion: who knows the test scales it. With
     `settling_time` T (s) above 0 it is 1 - exp(-t/T) of itself, t from the record's start.
@@ -28,34 +32,17 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         elapsed = motion.time - motion.time[0]
         settled = -np.expm1(-elapsed / shape["settling_time"])
         return np.asarray(force * (1.0 + coefficient * settled))
-    if shape["filter_time"] > 0.0:
-        return force + coefficient * _low_passed(force, motion, shape["filter_time"])
+    slow = shape["filter_time"] or shape["droop_time"]
+    if slow > 0.0:
+        return force + coefficient * low_passed(force, motion, slow)
+    if shape["load_power"] > 0.0:
+        loaded = (np.abs(force) / shape["load"]) ** shape["load_power"]
+        return np.asarray(force * (1.0 + coefficient * loaded))
     if shape["one_way"] > 0.0:
         return np.where(shape["side"] * force > 0.0, 1.0 + coefficient, 1.0) * force
     peak = float(np.abs(force).max())
     inside = peak >= shape["threshold"] if shape["side"] >= 0.0 else peak < shape["threshold"]
     return force * (1.0 + coefficient) if inside else force
-
-
-def _low_passed(force: Array, motion: Motion, time_constant: float) -> Array:
-    """Return a force behind the low-pass: steady, or settled as the record begins."""
-    if motion.periodic:
-        return low_passed_cycle(force, motion.step, time_constant)
-    steps = motion.step / time_constant
-    kept, mean = float(np.exp(-steps)), float(-np.expm1(-steps) / steps)
-    # exact for lines between samples
-    passed = lfilter([1.0 - mean, mean - kept], [1.0, -kept], force - force[0])
-    return np.asarray(force[0] + passed)
-
-
-def low_passed_cycle(force: Array, step: float, time_constant: float) -> Array:
-    """Return a cycle (N,) of a force in N, sampled every `step` s, behind a first-order low-pass.
-
-    `time_constant` is its own, s.
-    """
-    omega = 2.0 * np.pi * np.fft.rfftfreq(force.size, step)
-    lines = np.fft.rfft(force) / (1.0 + 1j * omega * time_constant)
-    return np.fft.irfft(lines, n=force.size)
 
 
 TERM = Term(
@@ -72,6 +59,9 @@ TERM = Term(
         Parameter("over", 0.0, 1e6, 0.0, ""),
         Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),
         Parameter("filter_time", 1e-6, 10.0, 0.0, "s", "", "log"),
+        Parameter("droop_time", 1e-6, 1e5, 0.0, "s", "", "log"),
+        Parameter("load", 1e-9, 1e9, 1.0, "N"),
+        Parameter("load_power", 0.0, 4.0, 0.0, ""),
     ),
     mistaken_for=("inertia", "viscous-damping"),
 )

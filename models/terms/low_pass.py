@@ -1,0 +1,66 @@
+"""What a channel's low-pass makes of a force: Butterworth's of some order, by its delay."""
+
+import numpy as np
+from scipy.signal import butter, cont2discrete, lfilter, lfilter_zi, residue
+
+from models.checks import Array
+from models.motion import Motion
+
+_NODES = {1: 8, 2: 12, 4: 32}
+_NEGLIGIBLE = 1e-6  # weight
+
+
+def low_passed(force: Array, motion: Motion, delay: float, order: int = 1) -> Array:
+    """Return a force (N,) behind a low-pass: steady, or settled as the record begins.
+
+    Parameters
+    ----------
+    force : ndarray, shape (N,)
+        Before it.
+    motion : Motion
+        Whose samples the force is at.
+    delay : float
+        Of slow forces, s: 1, 1.414 and 2.613 over the corner (rad/s) for orders 1, 2 and 4.
+    order : int
+        1, 2 or 4.
+    """
+    if motion.periodic:
+        return low_passed_cycle(force, motion.step, delay, order)
+    system = np.array([1.0]), _denominator(delay, order)
+    top, bottom, _ = cont2discrete(system, motion.step, method="foh")  # lines between samples
+    top = top.ravel()
+    return np.asarray(lfilter(top, bottom, force, zi=force[0] * lfilter_zi(top, bottom))[0])
+
+
+def low_passed_cycle(force: Array, step: float, delay: float, order: int = 1) -> Array:
+    """Return a cycle (N,) of a force, sampled every `step` s, behind a low-pass as above."""
+    s = 2j * np.pi * np.fft.rfftfreq(force.size, step)
+    lines = np.fft.rfft(force) / np.polyval(_denominator(delay, order), s)
+    return np.fft.irfft(lines, n=force.size)
+
+
+def earlier(order: int) -> tuple[Array, Array]:
+    """Return moments ago (M,) in delays, and weights (M,): their sum is what a low-pass passes.
+
+    By Gauss and Laguerre's rule for its response to an impulse, which decays as exp(-t/delay) or
+    faster.
+    """
+    return _EARLIER[order]
+
+
+def _denominator(delay: float, order: int) -> Array:
+    """Return the polynomial in s (rad/s) whose inverse the low-pass is."""
+    unscaled = butter(order, 1.0, analog=True)[1]
+    return np.asarray(unscaled * (delay / unscaled[-2]) ** np.arange(order, -1.0, -1.0))
+
+
+def _moments(order: int) -> tuple[Array, Array]:
+    residues, poles, _ = residue([1.0], _denominator(1.0, order))
+    ago, weights = np.polynomial.laguerre.laggauss(_NODES[order])
+    response = np.sum(residues * np.exp(np.outer(ago, poles + 1.0)), axis=1).real
+    weights = weights * response
+    used = np.abs(weights) > _NEGLIGIBLE
+    return ago[used], weights[used]
+
+
+_EARLIER = {order: _moments(order) for order in _NODES}
