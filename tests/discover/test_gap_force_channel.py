@@ -1,0 +1,84 @@
+"""What a force channel does to a force, from closed formulas: droop, a bent scale, low-passes."""
+
+import numpy as np
+import pytest
+
+from discover.gap import close_gap
+from tests.discover.gap_data import campaign
+
+BASELINE = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
+DROOP, RC = 0.3, 3e-3
+
+
+def force_of(t, x, v, a):
+    return 120.0 * a + 800.0 * v + 1500.0 * v * np.abs(v) + 40.0 * np.tanh(v / 1e-3)
+
+
+def passed_by(response):
+    """Return the law of a force that a channel's response (of omega) passes.
+
+    A record lasts whole cycles: its own spectrum is what passes.
+    """
+
+    def law(t, x, v, a):
+        omega = 2.0 * np.pi * np.fft.rfftfreq(t.size, t[1] - t[0])
+        return np.fft.irfft(response(omega) * np.fft.rfft(force_of(t, x, v, a)), t.size)
+
+    return law
+
+
+def high_pass(omega):
+    return 1j * omega * DROOP / (1.0 + 1j * omega * DROOP)
+
+
+def bessel(omega):
+    """Second order, of flat delay: no order that the catalogue has."""
+    s = 1j * omega * RC
+    return 3.0 / (3.0 + 3.0 * s + s**2)
+
+
+def butterworth(omega):
+    """Two sections of a fourth order, whose delays add up to RC."""
+    damping = np.sin(np.pi / 8.0), np.sin(3.0 * np.pi / 8.0)
+    s = 1j * omega * RC / (2.0 * sum(damping))
+    return 1.0 / np.prod([1.0 + 2.0 * d * s + s**2 for d in damping], axis=0)
+
+
+def test_a_charge_amplifier_that_droops_is_the_sensor_s():
+    found = close_gap(campaign(passed_by(high_pass)), BASELINE)
+    first = found.rounds[0]
+    assert first.effect == "sensor-gain"
+    assert first.probability > 0.9
+    assert first.parameters["droop_time"] == pytest.approx(DROOP, rel=0.05)
+    assert first.coefficient == pytest.approx(-1.0, abs=0.05)
+    assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
+
+
+@pytest.mark.parametrize("bend", [0.12, -0.12])
+def test_a_cell_whose_gain_goes_with_load_is_the_sensor_s(bend):
+    full = 1500.0
+
+    def law(t, x, v, a):
+        force = force_of(t, x, v, a)
+        return force * (1.0 + bend * np.abs(force) / full)
+
+    found = close_gap(campaign(law), BASELINE)
+    first = found.rounds[0]
+    assert first.effect == "sensor-gain"
+    assert first.probability > 0.9
+    assert first.parameters["load_power"] == 1.0
+    assert first.coefficient / first.parameters["load"] == pytest.approx(bend / full, rel=0.05)
+    assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
+
+
+@pytest.mark.parametrize(
+    "response", [lambda omega: 1.0 / (1.0 + 1j * omega * RC), bessel, butterworth],
+    ids=["resistor and capacitor", "Bessel", "Butterworth"],
+)  # fmt: skip
+def test_a_low_pass_in_the_force_channel_is_a_delay(response):
+    found = close_gap(campaign(passed_by(response), noise=3e-3), BASELINE)
+    first = found.rounds[0]
+    assert first.effect == "time-delay"
+    assert first.probability > 0.9
+    assert first.coefficient == pytest.approx(RC, rel=0.05)
+    assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
