@@ -38,7 +38,7 @@ def behind_filter(shape: Shape) -> bool:
 
 
 def coefficient_bounds(shape: Shape) -> tuple[float, float]:
-    """Return between what a coefficient lies where a sensor's shape bounds it."""
+    """Return what a coefficient lies between where a sensor's shape bounds it."""
     if behind_filter(shape):
         return -MOST_FILTERED, MOST_FILTERED
     if shape.get("filter_order", 0.0) > 0.0:

@@ -6,7 +6,7 @@ from scipy.signal import butter, cont2discrete, lfilter, lfilter_zi, residue
 from models.checks import Array
 from models.motion import Motion
 
-_NODES = {1: 8, 2: 12, 4: 32}
+_NODES = {1: 8, 2: 12, 3: 24, 4: 32}
 _NEGLIGIBLE = 1e-6  # weight
 
 
@@ -20,9 +20,9 @@ def low_passed(force: Array, motion: Motion, delay: float, order: int = 1) -> Ar
     motion : Motion
         Whose samples the force is at.
     delay : float
-        Of slow forces, s: 1, 1.414 and 2.613 over the corner (rad/s) for orders 1, 2 and 4.
+        Of slow forces, s: 1, 1.414, 2 and 2.613 over the corner (rad/s) for orders 1 to 4.
     order : int
-        1, 2 or 4.
+        1 to 4.
     """
     if motion.periodic:
         return low_passed_cycle(force, motion.step, delay, order)

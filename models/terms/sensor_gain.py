@@ -21,8 +21,8 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     constant: slow forces read 1 + g times themselves, fast ones less of g, and late.
     With `droop_time` T (s) above 0 it does so too, and g is a loss, as of a charge amplifier or an
     AC-coupled channel (g = -1): slow forces read too little and early.
-    With `load_power` p above 0 the part g is that at a force of `load` (N), and goes with the
-    force's size to the power p: a cell that is not linear.
+    With `load_power` p above 0 the part g is that at a force of `load` (N; 0 for 1 N), and goes
+    with the force's size to the power p: a cell that is not linear.
     A gain that is there from a campaign's test number `from_test` on, and grows for `over` tests
     until it is whole, can't be told from the motion: who knows the test scales it. With
     `settling_time` T (s) above 0 it is 1 - exp(-t/T) of itself, t from the record's start.
@@ -36,7 +36,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     if slow > 0.0:
         return force + coefficient * low_passed(force, motion, slow)
     if shape["load_power"] > 0.0:
-        loaded = (np.abs(force) / shape["load"]) ** shape["load_power"]
+        loaded = (np.abs(force) / (shape["load"] or 1.0)) ** shape["load_power"]
         return np.asarray(force * (1.0 + coefficient * loaded))
     if shape["one_way"] > 0.0:
         return np.where(shape["side"] * force > 0.0, 1.0 + coefficient, 1.0) * force
@@ -60,7 +60,7 @@ TERM = Term(
         Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),
         Parameter("filter_time", 1e-6, 10.0, 0.0, "s", "", "log"),
         Parameter("droop_time", 1e-6, 1e5, 0.0, "s", "", "log"),
-        Parameter("load", 1e-9, 1e9, 1.0, "N"),
+        Parameter("load", 1e-9, 1e9, 0.0, "N"),
         Parameter("load_power", 0.0, 4.0, 0.0, ""),
     ),
     mistaken_for=("inertia", "viscous-damping"),

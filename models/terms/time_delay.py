@@ -17,14 +17,14 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     With `only` it is that of one test of a campaign; who knows the test leaves it out of others.
     `resampled` 0 is a channel that samples later; 1 or 3 one whose samples were aligned by lines
     or a cubic spline between them, which rounds a jump of the force, or rings beside it.
-    `filter_order` 1, 2 or 4 is a (Butterworth) low-pass in the force channel, that slow forces pass
+    `filter_order` 1 to 4 is a (Butterworth) low-pass in the force channel, that slow forces pass
     with that delay.
     """
     force, delay = force_of(motion), delay_at(motion.step, coefficient, shape)
     if shape.get("resampled", 0.0) > 0.0:
         return between_samples(force, motion.time, delay, int(shape["resampled"]))
-    if shape.get("filter_order", 0.0) > 0.0:
-        return low_passed(force, motion, delay, int(shape["filter_order"])) if delay else force
+    if shape.get("filter_order", 0.0) > 0.0 and delay > 0.0:
+        return low_passed(force, motion, delay, int(shape["filter_order"]))
     if motion.periodic:
         lines = np.fft.rfft(force)
         omega = 2.0 * np.pi * np.fft.rfftfreq(force.size, motion.step)

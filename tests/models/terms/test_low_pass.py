@@ -7,7 +7,9 @@ from models.motion import Motion, sine_motion
 from models.terms.low_pass import earlier, low_passed, low_passed_cycle
 
 DELAY = 0.02
-DAMPINGS = {1: [0.5], 2: [np.sqrt(0.5)], 4: np.sin(np.pi / 8.0 * np.array([1.0, 3.0]))}
+DAMPINGS = {
+    1: [0.5], 2: [np.sqrt(0.5)], 3: [0.5, 0.5], 4: np.sin(np.pi / 8.0 * np.array([1.0, 3.0])),
+}  # fmt: skip
 """Ratios of the poles' pairs, evenly spread over a half circle; a first order has half a pair."""
 CORNERS = {order: 2.0 * sum(ratios) / DELAY for order, ratios in DAMPINGS.items()}
 """rad/s."""
