@@ -275,7 +275,7 @@ def _single(
     if not low <= solution[0] <= high:
         return None
     now = chi2 - float(solution @ (freed @ target))
-    value = evidence(now, len(v.parts) + v.shapes) - unusual(v.parts[0].shape)
+    value = evidence(now, len(v.parts) + v.shapes) - unusual(shape)
     return Entry((v.effect,), (v,), (tuple(solution),), now, value)
 
 

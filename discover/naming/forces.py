@@ -199,8 +199,10 @@ def _force(observation: Observation, model: ForceModel) -> Array:
             for name in ("resampled", "filter_order")
         )
         if order and delay > 0.0:
-            lasting, steady = (_force(observation, m) for m in (rest, steady_part(rest)))
-            return _low_passed(observation, rest, delay, order) + lasting - steady
+            passed, steady = _low_passed(observation, rest, delay, order), steady_part(rest)
+            if len(steady.terms) == len(rest.terms):
+                return passed
+            return passed + _force(observation, rest) - _force(observation, steady)
         if degree:
             return _aligned(observation, rest, delay, degree)
         return _force(_at(observation, observation.motion.time - delay), rest)

@@ -36,6 +36,22 @@ def test_a_channel_aligned_by_a_spline_is_late_at_the_ends_too(delay, lost):
     assert np.abs(late - record.amplitude * exact).max() < 0.003 * record.amplitude * omega * 1000.0
 
 
+@pytest.mark.parametrize("delay", [2e-5, 0.02])
+def test_a_low_pass_passes_a_sine_by_its_phasor_beside_a_zero_that_moves(delay):
+    """Where it is too fast for the cycle's grid, and where it shows there."""
+    record = campaign(device, noise=0.0).records[0]
+    observation = observe(record)
+    drift = FittedTerm("sensor-drift", 7.0, {"settling_time": 3.0})
+    filtered = FittedTerm("time-delay", delay, {"filter_order": 2.0})
+    found = model_force(observation, ForceModel((*MODEL.terms, drift, filtered)))
+    omega = 2.0 * np.pi * record.frequency
+    passed = 1.0 / (1.0 + 1j * omega * delay + 0.5 * (1j * omega * delay) ** 2)
+    phasor = record.amplitude * (-120.0 * omega**2 + 800.0j * omega) * passed
+    sine = np.imag(phasor * np.exp(1j * omega * observation.time))
+    moved = -7.0 * np.expm1(-observation.time / 3.0)
+    np.testing.assert_allclose(found, sine + moved, atol=1e-4 * np.abs(phasor))
+
+
 def test_a_gain_is_there_from_its_test_on():
     observations = observe_all(campaign(device, noise=0.0).records, 1)
     assert [o.test for o in observations] == list(range(1, 9))
