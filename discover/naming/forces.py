@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,6 +22,7 @@ DELAY = "time-delay"
 MOST_FILTERED = 0.3  # of a gain: with its filter a greater one is any delay, or memory of a flow
 _BEYOND = 4  # samples beyond a delay, that a spline needs
 _RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant shows on it
+_FINEST = 65536  # points of a cycle: beyond them are harmonics that no record shows
 _REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ
 _MOST_MISSING = 16  # samples in a row
 _MOST_KNOWN = 128  # cycles, of which the last force is remembered
@@ -243,20 +245,24 @@ def _low_passed(
 ) -> Array:
     """Return the steady force behind a low-pass that delays slow forces, at a sine test's samples.
 
-    The cycle's grid shows it where it is fine enough. Otherwise the force of earlier moments is
-    summed.
+    It is taken over one cycle, on a grid that is fine enough for the filter. What a spline made
+    of samples has none: there the force of earlier moments is summed.
     """
     model = steady_part(model)
     cycle, time = observation.cycle, observation.motion.time
+    if any(t.id == DELAY for t in model.terms):
+        ago, weights = earlier(order)
+        moments = time - delay * ago[:, None]
+        return np.asarray(weights @ [_force(_at(observation, at), model) for at in moments])
     if cycle is not None and delay > _RESOLVED * cycle.step:
         passed = low_passed_cycle(model.force(cycle), cycle.step, delay, order)
         return _from_cycle(observation, passed)
-    ago, weights = earlier(order)
-    moments = time - delay * ago[:, None]
-    if any(t.id == DELAY for t in model.terms):  # by samples that follow each other
-        return np.asarray(weights @ [_force(_at(observation, at), model) for at in moments])
-    forces = _force(_at(observation, moments.ravel()), model)
-    return np.asarray(weights @ forces.reshape(moments.shape))
+    period = 1.0 / observation.frequency
+    points = min(2 ** math.ceil(math.log2(_RESOLVED * period / delay)), _FINEST)
+    moments = np.arange(points) * (period / points)
+    force = _force(_at(observation, moments), model)
+    passed = low_passed_cycle(force, period / points, delay, order)
+    return _from_cycle(observation, passed)
 
 
 def _aligned(

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from discover.gap import close_gap
 from discover.motion_fit import observe, observe_all
@@ -50,6 +51,23 @@ def test_a_low_pass_passes_a_sine_by_its_phasor_beside_a_zero_that_moves(delay):
     sine = np.imag(phasor * np.exp(1j * omega * observation.time))
     moved = -7.0 * np.expm1(-observation.time / 3.0)
     np.testing.assert_allclose(found, sine + moved, atol=1e-4 * np.abs(phasor))
+
+
+@pytest.mark.parametrize("delay", [3e-3, 6e-3])
+def test_a_low_pass_rounds_friction_s_jumps_as_its_differential_equation_does(delay):
+    """Jumps far shorter than the samples and than the filter, which is within few samples."""
+    record = campaign(device, noise=0.0).records[0]
+    observation = observe(record)
+    shape = {"transition_speed": 1e-3 * 2.0 * np.pi * record.frequency * record.amplitude}
+    friction = FittedTerm("coulomb-friction", 50.0, shape)
+    filtered = FittedTerm("time-delay", delay, {"filter_order": 1.0})
+    found = model_force(observation, ForceModel((friction, filtered)))
+    dense = np.linspace(0.0, 2.0, 2_000_001)  # cycles; in the second the filter has settled
+    sign = np.tanh(np.cos(2.0 * np.pi * dense) / 1e-3)
+    kept = np.exp(-(dense[1] / record.frequency) / delay)
+    passed = 50.0 * lfilter([1.0 - kept], [1.0, -kept], sign)
+    exact = np.interp(1.0 + np.mod(observation.time * record.frequency, 1.0), dense, passed)
+    np.testing.assert_allclose(found, exact, atol=0.02 * 50.0)
 
 
 def test_a_gain_is_there_from_its_test_on():
