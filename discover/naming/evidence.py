@@ -22,13 +22,13 @@ _PRIOR_AGREES = 15.0
 _NO_AGREEMENT = 300.0  # of chi-square above the noise: then it can't be called agreement
 _UNKNOWN_SHARE = 0.6
 _UNKNOWN_COST = 3.0
-_LEFT = 0.12  # of the misfit, at which a shape is as likely the effect's as another's
+_LEFT = 0.08  # of the misfit, at which a shape is as likely the effect's as another's
 LEFT_BY_JOINT = 0.3  # likewise: contact and loss are simplified, and impacts hard to meet
 _LEFT_BY_PAIR = 0.5  # of these shares: two shapes that are not there leave less than one
 _LEFT_OF_FEW = 0.8  # likewise, where records are few
 FEW = 4  # records
 _LEFT_BESIDE = 0.5  # likewise, beside shapes that were added before
-_LEFT_SLOPE = 3.0
+_LEFT_SLOPE = 5.0  # of log odds in the share's: right and wrong ones hardly overlap
 _LEFT_MOST = 4.0  # nats
 _REFUTED = 40.0  # nats at most, that rows take back which an effect makes worse
 _UNSEEN = 15.0  # nats that a change over time loses where none is seen inside the records
@@ -126,10 +126,10 @@ def share_beside(entries: Sequence[Entry], effect: str, other: str) -> float:
 def usual_left(rows: Sequence[RecordRows], tolerated: float) -> tuple[float, float]:
     """Return the shares of the misfit at which a shape, or a joint, is likely not the effect's.
 
-    A shape that is really there leaves a few per cent of the misfit of many tests; one that is
-    not, but the nearest in the catalogue, a fifth and more. With a few tests a wrong shape is
-    hardly told from one that is right beside something small; nor is it where shapes that were
-    added before may be what is left.
+    A shape that is really there leaves a few per cent of the misfit of many tests, up to 4.5 in
+    blind studies; one that is not, but the nearest in the catalogue, 7.6 and up. With a few tests
+    a wrong shape is hardly told from one that is right beside something small; nor is it where
+    shapes that were added before may be what is left.
     """
     if len(rows) < FEW:
         return _LEFT_OF_FEW, _LEFT_OF_FEW

@@ -12,7 +12,7 @@ from numba import njit
 from models.checks import Array
 from models.motion import Motion
 
-_STEP = 0.25  # of the joint's natural period over 2 pi
+_STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
 _SETTLED = 5e-4
 _LEAD = 4  # of a cycle this part is stepped ahead: most joints forget within it how they began

@@ -24,17 +24,25 @@ def contest(*entries):
 
 
 @pytest.mark.parametrize(
-    ("left", "first"), [(0.01, "stiffness"), (0.04, "stiffness"), (0.1, UNKNOWN), (0.4, UNKNOWN)]
+    ("left", "first"), [(0.01, "stiffness"), (0.03, "stiffness"), (0.06, UNKNOWN), (0.4, UNKNOWN)]
 )
 def test_two_shapes_have_to_leave_less_than_one(left, first):
-    """A single shape that leaves a tenth is named; two that leave as much are by chance."""
+    """A single shape that leaves 6 % is named; two that leave as much are by chance."""
     pair = contest(
         entry("stiffness", left=0.5, evidence=-150.0),
         entry("stiffness", "inertia", left=left, evidence=-149.0),
     )
     assert pair.ranked[0][0] == first
-    alone = contest(entry("stiffness", left=0.1, evidence=-150.0))
+    alone = contest(entry("stiffness", left=0.06, evidence=-150.0))
     assert alone.ranked[0][0] == "stiffness"
+
+
+@pytest.mark.parametrize(("left", "sure"), [(0.045, "stiffness"), (0.12, UNKNOWN)])
+def test_how_sure_is_what_shapes_were_seen_to_leave(left, sure):
+    """On rigs right shapes left up to 4.5 % and wrong ones, the nearest there were, 7.6 and up."""
+    alone = contest(entry("stiffness", left=left, evidence=-150.0))
+    assert alone.ranked[0][0] == sure
+    assert alone.ranked[0][1] > 0.85
 
 
 def test_what_was_said_for_one_alone_is_lost_when_it_does_not_help():
