@@ -109,12 +109,34 @@ class Observation:
         """The same with a cycle whose grid shows impacts, which are shorter than a harmonic."""
         if self.cycle is None or self.cycle.displacement.size >= _FINE:
             return self
+        return replace(self, cycle=self.cycle_of(_FINE))
+
+    def cycle_of(self, points: int) -> Motion:
+        """Return one cycle of a sine test on a grid of so many points, made once for each number.
+
+        Raises
+        ------
+        ValueError
+            For a record that is not a sine test.
+        """
+        if points not in self._cycles:
+            self._cycles[points] = harmonic_motion(self._moving, self.frequency, samples=points)
+        return self._cycles[points]
+
+    @cached_property
+    def _cycles(self) -> dict[int, Motion]:
+        return {}
+
+    @cached_property
+    def _moving(self) -> Lines:
+        """Phasors of the cycle's displacement up to the last harmonic that moves."""
+        if self.cycle is None:
+            raise ValueError("only a sine test has a cycle")
         place = self.cycle.displacement
         phasors = np.fft.rfft(place)[: place.size // 2] * (2.0 / place.size)
         phasors[0] *= 0.5
         moves = np.abs(phasors) > _MOVES * np.abs(phasors[1])
-        phasors = phasors[: np.flatnonzero(moves)[-1] + 1]
-        return replace(self, cycle=harmonic_motion(phasors, self.frequency, samples=_FINE))
+        return np.asarray(phasors[: np.flatnonzero(moves)[-1] + 1])
 
     @property
     def file(self) -> str:

@@ -2,30 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Hashable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from weakref import ReferenceType, ref
 
 import numpy as np
 
 from discover.motion_fit import Observation
+from discover.naming.last import Last, key_of
+from discover.naming.late import aligned, at, from_cycle, low_passed, summed
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
 from models.terms import TERMS, ForceOf, Shape, Term
-from models.terms.low_pass import earlier, low_passed_cycle
-from models.terms.time_delay import between_samples, delay_at
+from models.terms.time_delay import delay_at
 
 DELAY = "time-delay"
 MOST_FILTERED = 0.3  # of a gain: with its filter a greater one is any delay, or memory of a flow
-_BEYOND = 4  # samples beyond a delay, that a spline needs
-_RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant shows on it
-_FINEST = 65536  # points of a cycle: beyond them are harmonics that no record shows
-_REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ
-_MOST_MISSING = 16  # samples in a row
-_MOST_KNOWN = 128  # cycles, of which the last force is remembered
 
 
 def needs_cycle(term: Term, shape: Shape) -> bool:
@@ -145,16 +137,6 @@ def of_number(number: int, model: ForceModel) -> ForceModel:
     return ForceModel(terms, model.name)
 
 
-def _from_cycle(observation: Observation, force: Array) -> Array:
-    """Return a force on the cycle's grid at the record's samples."""
-    cycle = observation.cycle
-    if cycle is None:
-        return force
-    phase = np.mod(observation.motion.time * observation.frequency, 1.0)
-    grid = np.arange(force.size + 1) / force.size
-    return np.asarray(np.interp(phase, grid, np.append(force, force[0])))
-
-
 def model_force(
     observation: Observation, model: ForceModel, *, resolved: bool = True
 ) -> Array:
@@ -188,7 +170,7 @@ def _force(observation: Observation, model: ForceModel) -> Array:
         rest = ForceModel(tuple(t for t in model.terms if t not in filtered))
         force = _force(observation, rest)
         for t in filtered:
-            passed = _low_passed(observation, rest, t.shape["filter_time"])
+            passed = _low_passed(observation, rest, t.shape["filter_time"], 1)
             force = force + t.coefficient * passed
         return force
     delays = [t for t in model.terms if t.id == DELAY]
@@ -206,91 +188,39 @@ def _force(observation: Observation, model: ForceModel) -> Array:
                 return passed
             return passed + _force(observation, rest) - _force(observation, steady)
         if degree:
-            return _aligned(observation, rest, delay, degree)
-        return _force(_at(observation, observation.motion.time - delay), rest)
+            key = key_of(rest)
+            return aligned(observation, lambda there: _force(there, rest), key, delay, degree)
+        return _force(at(observation, observation.motion.time - delay), rest)
     motion, cycle = observation.motion, observation.cycle
     if cycle is None or not any(needs_cycle(t.term, t.shape) for t in model.terms):
         return model.force(motion)
     plain = ForceModel(tuple(t for t in model.terms if not needs_cycle(t.term, t.shape)))
-    return plain.force(motion) + _from_cycle(observation, _remembered(cycle, model, plain))
+    return plain.force(motion) + from_cycle(observation, _remembered(cycle, model, plain))
 
 
-_KNOWN: dict[int, tuple[ReferenceType[Motion], Hashable, Array]] = {}
-"""What was evaluated last on a cycle: at other times of it, as behind a delay, it is the same."""
+_CHANGES: Last[Array] = Last()  # at other times of a cycle, as behind a delay, they are the same
 
 
 def _remembered(cycle: Motion, model: ForceModel, plain: ForceModel) -> Array:
     """Return what a model's terms with memory add to the plain ones over a cycle, (G,) N."""
     steady = steady_part(model)
-    key = tuple((t.term, t.coefficient, *t.shape.items()) for t in steady.terms)
-    known = _KNOWN.get(id(cycle))
-    if known is not None and known[0]() is cycle and known[1] == key:
-        return known[2]
-    change = steady.force(cycle) - steady_part(plain).force(cycle)
-    if len(_KNOWN) >= _MOST_KNOWN:
-        _KNOWN.pop(next(iter(list(_KNOWN))), None)  # threads may be here too
-    _KNOWN[id(cycle)] = ref(cycle), key, change
-    return change
+
+    def change() -> Array:
+        return np.asarray(steady.force(cycle) - steady_part(plain).force(cycle))
+
+    return _CHANGES.of(cycle, key_of(steady), change)
 
 
-def _at(observation: Observation, time: Array) -> Observation:
-    """Return a sine test at other times."""
-    if observation.at is None:
-        raise ValueError("only a sine test's motion is known at other times")
-    return replace(observation, motion=observation.at(time))
-
-
-def _low_passed(
-    observation: Observation, model: ForceModel, delay: float, order: int = 1
-) -> Array:
-    """Return the steady force behind a low-pass that delays slow forces, at a sine test's samples.
-
-    It is taken over one cycle, on a grid that is fine enough for the filter. What a spline made
-    of samples has none: there the force of earlier moments is summed.
-    """
+def _low_passed(observation: Observation, model: ForceModel, delay: float, order: int) -> Array:
+    """Return the steady force behind a low-pass that delays slow forces, (N,) at the samples."""
     model = steady_part(model)
-    cycle, time = observation.cycle, observation.motion.time
+
+    def force(there: Observation) -> Array:
+        return _force(there, model)
+
     if any(t.id == DELAY for t in model.terms):
-        ago, weights = earlier(order)
-        moments = time - delay * ago[:, None]
-        return np.asarray(weights @ [_force(_at(observation, at), model) for at in moments])
-    if cycle is not None and delay > _RESOLVED * cycle.step:
-        passed = low_passed_cycle(model.force(cycle), cycle.step, delay, order)
-        return _from_cycle(observation, passed)
-    period = 1.0 / observation.frequency
-    points = min(2 ** math.ceil(math.log2(_RESOLVED * period / delay)), _FINEST)
-    moments = np.arange(points) * (period / points)
-    force = _force(_at(observation, moments), model)
-    passed = low_passed_cycle(force, period / points, delay, order)
-    return _from_cycle(observation, passed)
-
-
-def _aligned(
-    observation: Observation, model: ForceModel, delay: float, degree: int
-) -> Array:
-    """Return the force as shifted by a spline through samples, some of them beyond the record."""
-    own = observation.motion.time
-    step = float(np.median(np.diff(own)))
-    beyond = step * np.arange(1, min(int(abs(delay) / step) + _BEYOND, own.size) + 1)
-    before, after = (own[:0], own[-1] + beyond) if delay < 0.0 else (own[0] - beyond[::-1], own[:0])
-    whole = np.concatenate([before, _with_missing(own, step), after])
-    force = _force(_at(observation, whole), model)
-    return between_samples(force, whole, delay, degree)[np.searchsorted(whole, own)]
-
-
-def _with_missing(time: Array, step: float) -> Array:
-    """Return the times of regular samples with those that are missing.
-
-    A record may have lost some, and a sine test's fit leaves out those at its reversals.
-    """
-    spacing = np.diff(time)
-    missing = np.round(spacing / step).astype(int) - 1
-    regular = np.abs(spacing - (missing + 1) * step) < _REGULAR * step
-    if not 0 < missing.max(initial=0) <= _MOST_MISSING or not regular.all():
-        return time
-    behind = np.repeat(time, np.append(missing, 0))  # of each missing one the last that is there
-    ahead = np.arange(behind.size) - np.searchsorted(behind, behind) + 1
-    return np.sort(np.concatenate([time, behind + ahead * step]))
+        return summed(observation, force, delay, order)
+    return low_passed(observation, force, key_of(model), delay, order)
 
 
 def steady_part(model: ForceModel) -> ForceModel:

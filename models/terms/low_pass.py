@@ -1,11 +1,13 @@
 """What a channel's low-pass makes of a force: Butterworth's of some order, by its delay."""
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import butter, cont2discrete, lfilter, lfilter_zi, residue
 
 from models.checks import Array
 from models.motion import Motion
 
+Lines = NDArray[np.complex128]
 _NODES = {1: 8, 2: 12, 3: 24, 4: 32}
 _NEGLIGIBLE = 1e-6  # weight
 
@@ -34,9 +36,13 @@ def low_passed(force: Array, motion: Motion, delay: float, order: int = 1) -> Ar
 
 def low_passed_cycle(force: Array, step: float, delay: float, order: int = 1) -> Array:
     """Return a cycle (N,) of a force, sampled every `step` s, behind a low-pass as above."""
-    s = 2j * np.pi * np.fft.rfftfreq(force.size, step)
-    lines = np.fft.rfft(force) / np.polyval(_denominator(delay, order), s)
-    return np.fft.irfft(lines, n=force.size)
+    return low_passed_lines(np.fft.rfft(force), force.size, step, delay, order)
+
+
+def low_passed_lines(lines: Lines, size: int, step: float, delay: float, order: int = 1) -> Array:
+    """Return a cycle (size,) as above, of the spectrum (size/2 + 1,) of the force before it."""
+    s = 2j * np.pi * np.fft.rfftfreq(size, step)
+    return np.fft.irfft(lines / np.polyval(_denominator(delay, order), s), n=size)
 
 
 def earlier(order: int) -> tuple[Array, Array]:

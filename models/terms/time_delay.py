@@ -1,5 +1,7 @@
 """Delay of the force channel behind the displacement channel (channel skew)."""
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
@@ -7,6 +9,8 @@ from models.checks import Array
 from models.motion import Motion
 from models.terms.low_pass import low_passed
 from models.terms.term import ForceOf, Parameter, Shape, Term
+
+Late = Callable[[float], Array]
 
 
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
@@ -22,7 +26,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     """
     force, delay = force_of(motion), delay_at(motion.step, coefficient, shape)
     if shape.get("resampled", 0.0) > 0.0:
-        return between_samples(force, motion.time, delay, int(shape["resampled"]))
+        return read_late(force, motion.time, int(shape["resampled"]))(delay)
     if shape.get("filter_order", 0.0) > 0.0 and delay > 0.0:
         return low_passed(force, motion, delay, int(shape["filter_order"]))
     if motion.periodic:
@@ -38,12 +42,14 @@ def delay_at(step: float, coefficient: float, shape: Shape) -> float:
     return coefficient * step * sampling if sampling > 0.0 else coefficient
 
 
-def between_samples(force: Array, time: Array, delay: float, degree: int) -> Array:
-    """Return samples (N,) some seconds late by a spline of this degree through them."""
+def read_late(force: Array, time: Array, degree: int) -> Late:
+    """Return what gives samples (N,) some seconds late, by a spline of this degree through them."""
     if not np.all(np.isfinite(force)):
-        return np.full_like(force, np.nan)
+        return lambda delay: np.full_like(force, np.nan)
+    if degree == 1:
+        return lambda delay: np.interp(time - delay, time, force)
     spline = make_interp_spline(time, force, k=degree)
-    return np.asarray(spline(np.clip(time - delay, time[0], time[-1])))
+    return lambda delay: np.asarray(spline(np.clip(time - delay, time[0], time[-1])))
 
 
 TERM = Term(

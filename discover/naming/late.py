@@ -1,0 +1,114 @@
+"""A sine test's force read late: behind a low-pass, or aligned from samples."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable
+from dataclasses import replace
+
+import numpy as np
+
+from discover.motion_fit import Lines, Observation
+from discover.naming.last import Last
+from models.checks import Array
+from models.terms.low_pass import earlier, low_passed_lines
+from models.terms.time_delay import Late, read_late
+
+ForceOn = Callable[[Observation], Array]
+
+_BEYOND = 4  # samples beyond a delay, that a spline needs
+_RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant shows on it
+_FINEST = 65536  # points of a cycle: beyond them are harmonics that no record shows
+_REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ
+_MOST_MISSING = 16  # samples in a row
+
+
+def at(observation: Observation, time: Array) -> Observation:
+    """Return a sine test at other times."""
+    if observation.at is None:
+        raise ValueError("only a sine test's motion is known at other times")
+    return replace(observation, motion=observation.at(time))
+
+
+def from_cycle(observation: Observation, force: Array) -> Array:
+    """Return a force on a grid over one cycle (G,) at the record's samples, (N,)."""
+    phase = np.mod(observation.motion.time * observation.frequency, 1.0)
+    grid = np.arange(force.size + 1) / force.size
+    return np.asarray(np.interp(phase, grid, np.append(force, force[0])))
+
+
+_LINES: Last[Lines] = Last()  # behind many filters the force is the same
+_LONGER: Last[Observation] = Last()  # by nearly equal delays
+_LATE: Last[Late] = Last()  # by any delay
+
+
+def low_passed(
+    observation: Observation, force: ForceOn, key: Hashable, delay: float, order: int
+) -> Array:
+    """Return a steady force behind a low-pass that delays slow forces, (N,) N.
+
+    It is taken over one cycle, on a grid that is fine enough for the filter.
+
+    Parameters
+    ----------
+    observation : Observation
+        Of a sine test.
+    force : callable
+        Of it at other times.
+    key : hashable
+        What the force depends on.
+    delay : float
+        Of slow forces, s.
+    order : int
+        Of the filter.
+    """
+    cycle = observation.cycle
+    if cycle is None or delay <= _RESOLVED * cycle.step:
+        points = math.ceil(math.log2(_RESOLVED / (observation.frequency * delay)))
+        cycle = observation.cycle_of(min(2**points, _FINEST))
+    there = replace(observation, motion=cycle)
+    lines = _LINES.of(cycle, key, lambda: np.fft.rfft(force(there)))
+    passed = low_passed_lines(lines, cycle.time.size, cycle.step, delay, order)
+    return from_cycle(observation, passed)
+
+
+def summed(observation: Observation, force: ForceOn, delay: float, order: int) -> Array:
+    """Return the same of a force that has no cycle, as a spline through samples has none."""
+    ago, weights = earlier(order)
+    moments = observation.motion.time - delay * ago[:, None]
+    return np.asarray(weights @ [force(at(observation, time)) for time in moments])
+
+
+def aligned(
+    observation: Observation, force: ForceOn, key: Hashable, delay: float, degree: int
+) -> Array:
+    """Return a force as shifted by a spline through samples, some of them beyond the record."""
+    own = observation.motion.time
+    step = float(np.median(np.diff(own)))
+    most = min(int(abs(delay) / step) + _BEYOND, own.size)
+
+    def make_longer() -> Observation:
+        beyond = step * np.arange(1, most + 1)
+        before = own[:0] if delay < 0.0 else own[0] - beyond[::-1]
+        after = own[-1] + beyond if delay < 0.0 else own[:0]
+        return at(observation, np.concatenate([before, _with_missing(own, step), after]))
+
+    longer = _LONGER.of(observation.motion, (most, delay < 0.0), make_longer)
+    whole = longer.motion.time
+    late = _LATE.of(longer.motion, (key, degree), lambda: read_late(force(longer), whole, degree))
+    return late(delay)[np.searchsorted(whole, own)]
+
+
+def _with_missing(time: Array, step: float) -> Array:
+    """Return the times of regular samples with those that are missing.
+
+    A record may have lost some, and a sine test's fit leaves out those at its reversals.
+    """
+    spacing = np.diff(time)
+    missing = np.round(spacing / step).astype(int) - 1
+    regular = np.abs(spacing - (missing + 1) * step) < _REGULAR * step
+    if not 0 < missing.max(initial=0) <= _MOST_MISSING or not regular.all():
+        return time
+    behind = np.repeat(time, np.append(missing, 0))  # of each missing one the last that is there
+    ahead = np.arange(behind.size) - np.searchsorted(behind, behind) + 1
+    return np.sort(np.concatenate([time, behind + ahead * step]))
