@@ -79,7 +79,11 @@ def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     *others, delay = fit.model.terms
     made = [{"resampled": degree, "filter_order": 0.0} for degree in (1.0, 3.0)]
     if delay.coefficient > 0.0:
-        made += [{"resampled": 0.0, "filter_order": order} for order in (1.0, 2.0, 4.0)]
+        made += [
+            {"resampled": 0.0, "filter_order": order, "digital": digital}
+            for order in (1.0, 2.0, 4.0)
+            for digital in (0.0, 1.0)
+        ]
     for shape in made:
         late = FittedTerm(delay.id, delay.coefficient, {**delay.shape, **shape})
         model = ForceModel((*others, late), fit.model.name)

@@ -17,6 +17,8 @@ _TESTS = 32  # of a campaign, from which a gain may have changed
 _FEW_TESTS = 4.0  # in which a gradual change is not told from a jump
 _SOFT = 0.1  # of a play's gap, over which flanks of rubber are met
 _MOST_OWN = 64  # tests, of which each may have its own value
+_IN_BAND = 0.1  # rad of the fastest test, from which a filter's own time constant shows
+_COARSE = 8.0  # samples, up to which a digital filter is not as an analogue one
 
 
 @dataclass(frozen=True)
@@ -150,7 +152,11 @@ def _delay(scales: Scales) -> list[Variant]:
         for rate in rates
         for shapes, degree in made
     ]
-    filtered = [_one("time-delay", 1, probe, filter_order=order) for order in (1.0, 2.0, 4.0)]
+    filtered = [
+        _one("time-delay", 1, probe, filter_order=order, digital=digital)
+        for order in (1.0, 2.0, 4.0)
+        for digital in ((0.0, 1.0) if probe < _COARSE * scales.step else (0.0,))
+    ]
     own = [[Part("time-delay", {"only": n}, probe) for n in _numbers(scales)]]
     return sampled + filtered + _each_its_own(own)
 
@@ -327,9 +333,11 @@ def _gain(scales: Scales) -> list[Variant]:
         _one("sensor-gain", 1, 1e-3, side=1.0, settling_time=float(t * scales.duration))
         for t in (0.03, 0.1, 0.3, 1.0, 10.0)
     ]
-    filtered = [
-        _one("sensor-gain", 1, 1e-3, side=1.0, filter_time=float(t / scales.omega))
+    filtered = [  # above the band only the product of gain and time constant shows
+        _one("sensor-gain", int(t > _IN_BAND), 1e-3, side=1.0,
+             filter_time=float(t / scales.omega), digital=digital)
         for t in np.geomspace(0.01, 1.0, 8)
+        for digital in ((0.0, 1.0) if t / scales.omega < _COARSE * scales.step else (0.0,))
     ]
     drooping = [
         _one("sensor-gain", 1, -1e-3, side=1.0, droop_time=float(t / scales.slowest))

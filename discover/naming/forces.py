@@ -9,7 +9,15 @@ import numpy as np
 
 from discover.motion_fit import Observation
 from discover.naming.last import Last, key_of
-from discover.naming.late import aligned, at, from_cycle, low_passed, summed
+from discover.naming.late import (
+    aligned,
+    at,
+    from_cycle,
+    is_digital,
+    low_passed,
+    low_passed_digitally,
+    summed,
+)
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
@@ -170,7 +178,8 @@ def _force(observation: Observation, model: ForceModel) -> Array:
         rest = ForceModel(tuple(t for t in model.terms if t not in filtered))
         force = _force(observation, rest)
         for t in filtered:
-            passed = _low_passed(observation, rest, t.shape["filter_time"], 1)
+            on_samples = t.shape.get("digital", 0.0) > 0.0
+            passed = _low_passed(observation, rest, t.shape["filter_time"], 1, digital=on_samples)
             force = force + t.coefficient * passed
         return force
     delays = [t for t in model.terms if t.id == DELAY]
@@ -178,15 +187,16 @@ def _force(observation: Observation, model: ForceModel) -> Array:
         rest = ForceModel(tuple(t for t in model.terms if t.id != DELAY))
         step = observation.motion.step
         delay = sum(delay_at(step, t.coefficient, t.shape) for t in delays)
-        degree, order = (
+        degree, order, digital = (
             int(max(t.shape.get(name, 0.0) for t in delays))
-            for name in ("resampled", "filter_order")
+            for name in ("resampled", "filter_order", "digital")
         )
         if order and delay > 0.0:
-            passed, steady = _low_passed(observation, rest, delay, order), steady_part(rest)
+            late = _low_passed(observation, rest, delay, order, digital=digital > 0)
+            steady = steady_part(rest)
             if len(steady.terms) == len(rest.terms):
-                return passed
-            return passed + _force(observation, rest) - _force(observation, steady)
+                return late
+            return late + _force(observation, rest) - _force(observation, steady)
         if degree:
             key = key_of(rest)
             return aligned(observation, lambda there: _force(there, rest), key, delay, degree)
@@ -211,7 +221,9 @@ def _remembered(cycle: Motion, model: ForceModel, plain: ForceModel) -> Array:
     return _CHANGES.of(cycle, key_of(steady), change)
 
 
-def _low_passed(observation: Observation, model: ForceModel, delay: float, order: int) -> Array:
+def _low_passed(
+    observation: Observation, model: ForceModel, delay: float, order: int, *, digital: bool
+) -> Array:
     """Return the steady force behind a low-pass that delays slow forces, (N,) at the samples."""
     model = steady_part(model)
 
@@ -220,6 +232,8 @@ def _low_passed(observation: Observation, model: ForceModel, delay: float, order
 
     if any(t.id == DELAY for t in model.terms):
         return summed(observation, force, delay, order)
+    if digital and is_digital(observation, delay):
+        return low_passed_digitally(observation, force, key_of(model), delay, order)
     return low_passed(observation, force, key_of(model), delay, order)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from discover.motion_fit import Lines, Observation
 from discover.naming.last import Last
 from models.checks import Array
-from models.terms.low_pass import earlier, low_passed_lines
+from models.terms.low_pass import earlier, low_passed_lines, low_passed_samples
 from models.terms.time_delay import Late, read_late
 
 ForceOn = Callable[[Observation], Array]
@@ -21,6 +21,8 @@ _RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant 
 _FINEST = 65536  # points of a cycle: beyond them are harmonics that no record shows
 _REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ
 _MOST_MISSING = 16  # samples in a row
+_DIGITAL = 8.0  # samples of delay, from which a digital filter is as an analogue one
+_SETTLES = 20.0  # delays, after which a filter has forgotten
 
 
 def at(observation: Observation, time: Array) -> Observation:
@@ -40,6 +42,7 @@ def from_cycle(observation: Observation, force: Array) -> Array:
 _LINES: Last[Lines] = Last()  # behind many filters the force is the same
 _LONGER: Last[Observation] = Last()  # by nearly equal delays
 _LATE: Last[Late] = Last()  # by any delay
+_BEFORE: Last[Array] = Last()  # behind many digital filters it is the same
 
 
 def low_passed(
@@ -84,19 +87,45 @@ def aligned(
 ) -> Array:
     """Return a force as shifted by a spline through samples, some of them beyond the record."""
     own = observation.motion.time
-    step = float(np.median(np.diff(own)))
-    most = min(int(abs(delay) / step) + _BEYOND, own.size)
-
-    def make_longer() -> Observation:
-        beyond = step * np.arange(1, most + 1)
-        before = own[:0] if delay < 0.0 else own[0] - beyond[::-1]
-        after = own[-1] + beyond if delay < 0.0 else own[:0]
-        return at(observation, np.concatenate([before, _with_missing(own, step), after]))
-
-    longer = _LONGER.of(observation.motion, (most, delay < 0.0), make_longer)
+    most = min(int(abs(delay) / _step(own)) + _BEYOND, own.size)
+    longer = _longer(observation, most if delay >= 0.0 else -most)
     whole = longer.motion.time
     late = _LATE.of(longer.motion, (key, degree), lambda: read_late(force(longer), whole, degree))
     return late(delay)[np.searchsorted(whole, own)]
+
+
+def is_digital(observation: Observation, delay: float) -> bool:
+    """Tell whether a digital filter of a delay (s) differs from an analogue one on a record."""
+    return delay < _DIGITAL * _step(observation.motion.time)
+
+
+def low_passed_digitally(
+    observation: Observation, force: ForceOn, key: Hashable, delay: float, order: int
+) -> Array:
+    """Return a force behind a low-pass that works on the samples, for long before the record."""
+    own = observation.motion.time
+    longer = _longer(observation, math.ceil(_SETTLES * _DIGITAL))
+    before = _BEFORE.of(longer.motion, key, lambda: force(longer))
+    passed = low_passed_samples(before, _step(own), delay, order)
+    return passed[np.searchsorted(longer.motion.time, own)]
+
+
+def _step(time: Array) -> float:
+    return float(np.median(np.diff(time)))
+
+
+def _longer(observation: Observation, samples: int) -> Observation:
+    """Return a sine test with so many samples before it (or after it, where negative)."""
+
+    def make() -> Observation:
+        own = observation.motion.time
+        step = _step(own)
+        beyond = step * np.arange(1, abs(samples) + 1)
+        before = own[:0] if samples < 0 else own[0] - beyond[::-1]
+        after = own[-1] + beyond if samples < 0 else own[:0]
+        return at(observation, np.concatenate([before, _with_missing(own, step), after]))
+
+    return _LONGER.of(observation.motion, samples, make)
 
 
 def _with_missing(time: Array, step: float) -> Array:

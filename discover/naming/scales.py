@@ -36,6 +36,8 @@ class Scales:
     """m/s over which the baseline's friction reverses."""
     sampling: float = 0.0
     """Hz, highest; 0 where all records have the same."""
+    step: float = 0.0
+    """s, longest sampling interval."""
 
     @property
     def tests(self) -> int:
@@ -60,4 +62,5 @@ def scales_of(observations: Sequence[Observation], reversal: float = 0.0) -> Sca
         numbers=tuple(o.test for o in observations),
         reversal=reversal,
         sampling=0.0 if slowest < _ANOTHER_RATE * fastest else 1.0 / fastest,
+        step=slowest,
     )

@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, cont2discrete, lfilter, lfilter_zi, residue
+from scipy.signal import bilinear, butter, cont2discrete, lfilter, lfilter_zi, residue
 
 from models.checks import Array
 from models.motion import Motion
@@ -12,7 +12,9 @@ _NODES = {1: 8, 2: 12, 3: 24, 4: 32}
 _NEGLIGIBLE = 1e-6  # weight
 
 
-def low_passed(force: Array, motion: Motion, delay: float, order: int = 1) -> Array:
+def low_passed(
+    force: Array, motion: Motion, delay: float, order: int = 1, *, digital: bool = False
+) -> Array:
     """Return a force (N,) behind a low-pass: steady, or settled as the record begins.
 
     Parameters
@@ -25,12 +27,27 @@ def low_passed(force: Array, motion: Motion, delay: float, order: int = 1) -> Ar
         Of slow forces, s: 1, 1.414, 2 and 2.613 over the corner (rad/s) for orders 1 to 4.
     order : int
         1 to 4.
+    digital : bool
+        Whether it works on the record's samples. A cycle's grid has none: there it does not.
     """
     if motion.periodic:
         return low_passed_cycle(force, motion.step, delay, order)
+    if digital:
+        return low_passed_samples(force, motion.step, delay, order)
     system = np.array([1.0]), _denominator(delay, order)
     top, bottom, _ = cont2discrete(system, motion.step, method="foh")  # lines between samples
-    top = top.ravel()
+    return _settled(force, top.ravel(), bottom)
+
+
+def low_passed_samples(force: Array, step: float, delay: float, order: int = 1) -> Array:
+    """Return samples (N,), one every `step` s, behind a digital low-pass, settled as they begin.
+
+    It is the bilinear transform of the analogue one: slow forces pass with that very delay.
+    """
+    return _settled(force, *bilinear([1.0], _denominator(delay, order), fs=1.0 / step))
+
+
+def _settled(force: Array, top: Array, bottom: Array) -> Array:
     return np.asarray(lfilter(top, bottom, force, zi=force[0] * lfilter_zi(top, bottom))[0])
 
 

@@ -18,7 +18,8 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     The range reaches from a peak force of `threshold` (N) upwards, or up to it where `side` is
     negative. With `one_way` 1 the gain is that of tension (`side` 1) or compression (-1) only.
     With `filter_time` T (s) above 0 the part g passes a low-pass of first order with that time
-    constant: slow forces read 1 + g times themselves, fast ones less of g, and late.
+    constant: slow forces read 1 + g times themselves, fast ones less of g, and late; with
+    `digital` 1 it works on the samples.
     With `droop_time` T (s) above 0 it does so too, and g is a loss, as of a charge amplifier or an
     AC-coupled channel (g = -1): slow forces read too little and early.
     With `load_power` p above 0 the part g is that at a force of `load` (N; 0 for 1 N), and goes
@@ -34,7 +35,8 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         return np.asarray(force * (1.0 + coefficient * settled))
     slow = shape["filter_time"] or shape["droop_time"]
     if slow > 0.0:
-        return force + coefficient * low_passed(force, motion, slow)
+        digital = shape["digital"] > 0.0
+        return force + coefficient * low_passed(force, motion, slow, digital=digital)
     if shape["load_power"] > 0.0:
         loaded = (np.abs(force) / (shape["load"] or 1.0)) ** shape["load_power"]
         return np.asarray(force * (1.0 + coefficient * loaded))
@@ -59,6 +61,7 @@ TERM = Term(
         Parameter("over", 0.0, 1e6, 0.0, ""),
         Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),
         Parameter("filter_time", 1e-6, 10.0, 0.0, "s", "", "log"),
+        Parameter("digital", 0.0, 1.0, 0.0, ""),
         Parameter("droop_time", 1e-6, 1e5, 0.0, "s", "", "log"),
         Parameter("load", 1e-9, 1e9, 0.0, "N"),
         Parameter("load_power", 0.0, 4.0, 0.0, ""),

@@ -22,13 +22,14 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     `resampled` 0 is a channel that samples later; 1 or 3 one whose samples were aligned by lines
     or a cubic spline between them, which rounds a jump of the force, or rings beside it.
     `filter_order` 1 to 4 is a (Butterworth) low-pass in the force channel, that slow forces pass
-    with that delay.
+    with that delay; `digital` 1 one that works on the samples.
     """
     force, delay = force_of(motion), delay_at(motion.step, coefficient, shape)
     if shape.get("resampled", 0.0) > 0.0:
         return read_late(force, motion.time, int(shape["resampled"]))(delay)
     if shape.get("filter_order", 0.0) > 0.0 and delay > 0.0:
-        return low_passed(force, motion, delay, int(shape["filter_order"]))
+        digital = shape.get("digital", 0.0) > 0.0
+        return low_passed(force, motion, delay, int(shape["filter_order"]), digital=digital)
     if motion.periodic:
         lines = np.fft.rfft(force)
         omega = 2.0 * np.pi * np.fft.rfftfreq(force.size, motion.step)
@@ -61,6 +62,7 @@ TERM = Term(
     parameters=(
         Parameter("resampled", 0.0, 3.0, 0.0, ""),
         Parameter("filter_order", 0.0, 4.0, 0.0, ""),
+        Parameter("digital", 0.0, 1.0, 0.0, ""),
         Parameter("sampling", 0.0, 1e9, 0.0, "Hz"),
         Parameter("only", 0.0, 1e6, 0.0, ""),
     ),

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.signal import butter, group_delay, lfilter
 
 from discover.gap import close_gap
-from tests.discover.gap_data import campaign
+from discover.records import Campaign, Record
+from tests.discover.gap_data import PLAN, campaign
 
 BASELINE = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
 DROOP, RC = 0.3, 3e-3
@@ -82,3 +84,49 @@ def test_a_low_pass_in_the_force_channel_is_a_delay(response):
     assert first.probability > 0.9
     assert first.coefficient == pytest.approx(RC, rel=0.05)
     assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
+
+
+RATE, BEFORE = 160.0, 400
+"""Hz of a logger, and samples that its filter saw before the record."""
+
+
+def logged(read, noise=3e-3):
+    """Return tests of which the logger keeps what it reads of the samples, coarse ones."""
+    rng, records = np.random.default_rng(5), []
+    for frequency, amplitude in PLAN:
+        time = np.arange(-BEFORE, round(8.0 * RATE / frequency)) / RATE
+        omega = 2.0 * np.pi * frequency
+        x, v = amplitude * np.sin(omega * time), amplitude * omega * np.cos(omega * time)
+        force = read(force_of(time, x, v, -(omega**2) * x))[BEFORE:]
+        force += noise * np.sqrt(np.mean(force**2)) * rng.standard_normal(force.size)
+        records.append(Record(f"{frequency}-{amplitude}.csv", time[BEFORE:], force, x[BEFORE:]))
+    return Campaign("logged", tuple(records))
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_force_that_was_filtered_after_it_was_sampled_is_a_delay(order):
+    top, bottom = butter(order, 25.0, fs=RATE)
+    late = float(group_delay((top, bottom), w=[1e-4])[1][0]) / RATE
+    found = close_gap(logged(lambda force: lfilter(top, bottom, force)), BASELINE)
+    first = found.rounds[0]
+    assert first.effect == "time-delay"
+    assert first.probability > 0.9
+    assert first.parameters["digital"] == 1.0
+    assert first.coefficient == pytest.approx(late, rel=0.01)
+    assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
+
+
+def test_a_gain_behind_a_logger_s_filter_is_no_delay():
+    """Its lag is a twentieth of a sample; a delay had been named with certainty."""
+    corner = 55.0
+
+    def read(force):
+        top, bottom = butter(1, corner, fs=RATE)
+        return force + 0.2 * lfilter(top, bottom, force)
+
+    first = close_gap(logged(read), BASELINE).rounds[0]
+    assert first.effect == "sensor-gain"
+    assert first.coefficient == pytest.approx(0.2, abs=0.03)
+    warped = 1.0 / (2.0 * RATE * np.tan(np.pi * corner / RATE))
+    assert first.parameters["filter_time"] == pytest.approx(warped, rel=0.1)
+    assert first.parameters["digital"] == 1.0

@@ -70,6 +70,25 @@ def test_a_low_pass_rounds_friction_s_jumps_as_its_differential_equation_does(de
     np.testing.assert_allclose(found, exact, atol=0.02 * 50.0)
 
 
+@pytest.mark.parametrize("delay", [1e-4, 4e-3])
+def test_a_digital_low_pass_works_on_the_samples_that_came_before(delay):
+    """Of a first order: y[n] = y[n-1] + k (x[n] + x[n-1] - 2 y[n-1]), k = step/(step + 2 delay)."""
+    record = campaign(device, noise=0.0).records[0]
+    observation = observe(record)
+    shape = {"transition_speed": 1e-3 * 2.0 * np.pi * record.frequency * record.amplitude}
+    friction = FittedTerm("coulomb-friction", 50.0, shape)
+    filtered = FittedTerm("time-delay", delay, {"filter_order": 1.0, "digital": 1.0})
+    found = model_force(observation, ForceModel((friction, filtered)))
+    step = record.time[1] - record.time[0]
+    long = step * np.arange(-500, record.time.size)
+    jumps = 50.0 * np.tanh(np.cos(2.0 * np.pi * record.frequency * long) / 1e-3)
+    passed, k = np.zeros_like(jumps), step / (step + 2.0 * delay)
+    for n in range(1, jumps.size):
+        passed[n] = passed[n - 1] + k * (jumps[n] + jumps[n - 1] - 2.0 * passed[n - 1])
+    exact = passed[500:][np.searchsorted(record.time, observation.time - 0.5 * step)]
+    np.testing.assert_allclose(found, exact, atol=1e-3 * 50.0)
+
+
 def test_a_gain_is_there_from_its_test_on():
     observations = observe_all(campaign(device, noise=0.0).records, 1)
     assert [o.test for o in observations] == list(range(1, 9))

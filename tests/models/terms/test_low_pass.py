@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.signal import butter, group_delay, lfilter
 
 from models.motion import Motion, sine_motion
-from models.terms.low_pass import earlier, low_passed, low_passed_cycle
+from models.terms.low_pass import earlier, low_passed, low_passed_cycle, low_passed_samples
 
 DELAY = 0.02
 DAMPINGS = {
@@ -63,3 +64,17 @@ def test_a_record_ends_in_the_steady_state_of_its_cycle(order):
     speed = np.tile(cycle.velocity, 12)
     late = low_passed(speed, at_samples(time, speed), DELAY, order)[-steady.size :]
     assert np.allclose(late, steady, atol=2e-4 * np.abs(steady).max())
+
+
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("corner", [8.0, 40.0])
+def test_a_digital_low_pass_is_that_which_scipy_designs_for_the_sampling_rate(order, corner):
+    rate = 100.0
+    top, bottom = butter(order, corner, fs=rate)
+    late = float(group_delay((top, bottom), w=[1e-4])[1][0]) / rate
+    jumps = np.sign(np.sin(0.3 * np.arange(400.0)))
+    jumps[:5] = 0.0  # settled as it begins
+    passed = low_passed_samples(jumps, 1.0 / rate, late, order)
+    np.testing.assert_allclose(passed, lfilter(top, bottom, jumps), atol=1e-5)
+    motion = at_samples(np.arange(400) / rate, jumps)
+    np.testing.assert_array_equal(low_passed(jumps, motion, late, order, digital=True), passed)
