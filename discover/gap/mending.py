@@ -18,6 +18,7 @@ from discover.naming.rows import RecordRows
 from models.constitutive import FittedTerm, ForceModel
 
 _SUPERFLUOUS = 6.0  # nats that an earlier effect has to be worth
+_BEGIN = 3  # steps, after which the best way to make a delay shows
 _CLEARER = 0.99  # of a gap, below which another kind of delay is preferred
 _LAWS = 3  # of an effect, that are fitted instead of values of every test's own
 _MOSTLY = 0.95  # of what these explain, that such a law has to
@@ -66,8 +67,7 @@ def _shared(
     best = min(trials, key=lambda f: f.chi2)
     if fit.chi2 - best.chi2 < _MOSTLY * (fit.chi2 - own.chi2):
         return own
-    gap, own_gap = (pooled([record_misfit(r, f.model) for r in rows]) for f in (best, own))
-    if gap < _AS_WELL * own_gap:
+    if _gap(rows, best) < _AS_WELL * _gap(rows, own):
         return best
     predicts = pooled(left_out(rows, best)) < _PREDICTS * pooled(left_out(rows, own))
     return best if predicts else own
@@ -75,23 +75,27 @@ def _shared(
 
 def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     """Return the fit with the delay made as its samples tell: its lines hardly do."""
-    best, gap = fit, _CLEARER * pooled([record_misfit(r, fit.model) for r in rows])
     *others, delay = fit.model.terms
-    made = [{"resampled": degree, "filter_order": 0.0} for degree in (1.0, 3.0)]
-    if delay.coefficient > 0.0:
-        made += [
-            {"resampled": 0.0, "filter_order": order, "digital": digital}
-            for order in (1.0, 2.0, 4.0)
-            for digital in (0.0, 1.0)
-        ]
-    for shape in made:
-        late = FittedTerm(delay.id, delay.coefficient, {**delay.shape, **shape})
-        model = ForceModel((*others, late), fit.model.name)
-        trial = fit_model(rows, model, free_parameters(model))
-        now = pooled([record_misfit(r, trial.model) for r in rows])
-        if now < gap:
-            best, gap = trial, now
-    return best
+    shapes = [{**delay.shape, **made} for made in _made(delay.coefficient)]
+    late = [FittedTerm(delay.id, delay.coefficient, s) for s in shapes if s != delay.shape]
+    models = [ForceModel((*others, t), fit.model.name) for t in late]
+    parameters = free_parameters(fit.model)
+    begun = [fit_model(rows, m, parameters, iterations=_BEGIN) for m in models]
+    first = min(begun, key=lambda f: _gap(rows, f))
+    best = fit_model(rows, first.model, parameters)
+    return best if _gap(rows, best) < _CLEARER * _gap(rows, fit) else fit
+
+
+def _made(delay: float) -> list[dict[str, float]]:
+    """Return how a delay (s) may be made: sampled later, aligned from samples, or by a filter."""
+    made = [(degree, 0.0, 0.0) for degree in (0.0, 1.0, 3.0)]
+    if delay > 0.0:
+        made += [(0.0, order, digital) for order in (1.0, 2.0, 4.0) for digital in (0.0, 1.0)]
+    return [{"resampled": d, "filter_order": o, "digital": digital} for d, o, digital in made]
+
+
+def _gap(rows: Sequence[RecordRows], fit: ModelFit) -> float:
+    return pooled([record_misfit(r, fit.model) for r in rows])
 
 
 def without_superfluous(
