@@ -65,9 +65,10 @@ def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
     seen = counted(rows, fit) if has_impacts(fit.model) else rows
     changes = any(t.term.acts != "force" for t in fit.model.terms)
     units = UnitRows()
-    tangents = _tangents_of_each(seen, fit, units)
-    stay = _UNSEEN * np.sum([part @ part.T for part in tangents], axis=0)
-    along = tangents if changes else None
+    along = _tangents_of_each(seen, fit, units) if changes else None
+    stay = None
+    if along is not None:
+        stay = _UNSEEN * np.sum([part @ part.T for part in along], axis=0)
     found: dict[int, Misfit] = {}
     folds = min(len(rows), _FOLDS)
     for fold in range(folds):

@@ -297,7 +297,8 @@ def fit_model(
         (P, R) tangents at the start, kept for all steps: for models that simulate a joint, where
         the start is close and tangents cost most.
     stay : array, optional
-        (P, P) curvature that draws the parameters to their start.
+        (P, P) curvature that draws the parameters to their start. For models that are not sums of
+        forces.
     rough : bool
         Whether steps leave out that a joint passes an added force on changed.
     """
@@ -305,8 +306,7 @@ def fit_model(
     sizes = {name: max(r.sizes[name] for r in rows) for name in rows[0].sizes}
     units = UnitRows() if units is None else units
     linear = not _transforms(rows, model)
-    solved = linear and stay is None
-    if solved:
+    if linear:
         model = _solved(rows, units, model, parameters, target)
     at = units.of_model(rows, model)
     chi2 = _square(target - at)
@@ -322,7 +322,7 @@ def fit_model(
     def drawn(values: Array) -> float:
         return 0.0 if stay is None else float((values - begun) @ stay @ (values - begun))
 
-    settled = not parameters or (solved and all(p.shape is None for p in parameters))
+    settled = not parameters or (linear and all(p.shape is None for p in parameters))
     damping, idle = _DAMPING, 0
     for _ in range(0 if settled or not np.isfinite(chi2) else iterations):
         scale = np.linalg.norm(tangents, axis=1)
@@ -343,7 +343,7 @@ def fit_model(
                 step[~stuck] = _step(gram[np.ix_(~stuck, ~stuck)], slope[~stuck], damping)
                 values = _bounded(model, parameters, old + step / safe, sizes)
             trial = with_values(model, parameters, values)
-            if solved:
+            if linear:
                 trial = _solved(rows, units, trial, parameters, target)
             rows_now = units.of_model(rows, trial)
             now = _square(target - rows_now)
