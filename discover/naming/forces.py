@@ -56,6 +56,11 @@ def adds_up(term: Term, shape: Shape) -> bool:
     return term.id == "sensor-gain" and not part and shape.get("side", 1.0) >= 0.0
 
 
+def _of_samples(fitted: FittedTerm) -> bool:
+    """Tell whether a sensor works on the samples: what it reads has no cycle."""
+    return any(fitted.shape.get(name, 0.0) > 0.0 for name in ("resampled", "digital"))
+
+
 def at_samples(term: Term, shape: Shape) -> bool:
     """Tell whether a term is evaluated at the samples: what shifts them, or changes meanwhile."""
     return term.id == DELAY or behind_filter(shape) or in_record(term, shape)
@@ -230,10 +235,10 @@ def _low_passed(
     def force(there: Observation) -> Array:
         return _force(there, model)
 
-    if any(t.id == DELAY for t in model.terms):
-        return summed(observation, force, delay, order)
     if digital and is_digital(observation, delay):
         return low_passed_digitally(observation, force, key_of(model), delay, order)
+    if any(_of_samples(t) for t in model.terms):
+        return summed(observation, force, delay, order)
     return low_passed(observation, force, key_of(model), delay, order)
 
 

@@ -10,6 +10,7 @@ from models.motion import Motion
 Lines = NDArray[np.complex128]
 _NODES = {1: 8, 2: 12, 3: 24, 4: 32}
 _NEGLIGIBLE = 1e-6  # weight
+_BUTTERWORTH = {order: butter(order, 1.0, analog=True)[1] for order in _NODES}
 
 
 def low_passed(
@@ -73,7 +74,7 @@ def earlier(order: int) -> tuple[Array, Array]:
 
 def _denominator(delay: float, order: int) -> Array:
     """Return the polynomial in s (rad/s) whose inverse the low-pass is."""
-    unscaled = butter(order, 1.0, analog=True)[1]
+    unscaled = _BUTTERWORTH[order]
     return np.asarray(unscaled * (delay / unscaled[-2]) ** np.arange(order, -1.0, -1.0))
 
 

@@ -53,6 +53,28 @@ def test_a_low_pass_passes_a_sine_by_its_phasor_beside_a_zero_that_moves(delay):
     np.testing.assert_allclose(found, sine + moved, atol=1e-4 * np.abs(phasor))
 
 
+@pytest.mark.parametrize(
+    ("made", "passed"),
+    [
+        ({}, lambda s: np.exp(-s * 3e-3)),
+        ({"filter_order": 1.0}, lambda s: 1.0 / (1.0 + s * 3e-3)),
+        ({"resampled": 3.0}, lambda s: np.exp(-s * 3e-3)),
+    ],
+    ids=["late", "filtered", "aligned"],
+)  # fmt: skip
+def test_a_gain_behind_a_filter_reads_a_late_channel_by_both_phasors(made, passed):
+    record = campaign(device, noise=0.0).records[0]
+    observation = observe(record)
+    late = FittedTerm("time-delay", 3e-3, made)
+    gain = FittedTerm("sensor-gain", 0.2, {"filter_time": 8e-3})
+    found = model_force(observation, ForceModel((*MODEL.terms, late, gain)))
+    s = 2j * np.pi * record.frequency
+    phasor = record.amplitude * (120.0 * s**2 + 800.0 * s) * passed(s)
+    phasor *= 1.0 + 0.2 / (1.0 + s * 8e-3)
+    exact = np.imag(phasor * np.exp(s * observation.time))
+    np.testing.assert_allclose(found, exact, atol=1e-4 * np.abs(phasor))
+
+
 @pytest.mark.parametrize("delay", [3e-3, 6e-3])
 def test_a_low_pass_rounds_friction_s_jumps_as_its_differential_equation_does(delay):
     """Jumps far shorter than the samples and than the filter, which is within few samples."""
