@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import bilinear, butter, cont2discrete, lfilter, lfilter_zi, residue
+from scipy.signal import butter, cont2discrete, lfilter, residue
 
 from models.checks import Array
 from models.motion import Motion
@@ -11,6 +11,11 @@ Lines = NDArray[np.complex128]
 _NODES = {1: 8, 2: 12, 3: 24, 4: 32}
 _NEGLIGIBLE = 1e-6  # weight
 _BUTTERWORTH = {order: butter(order, 1.0, analog=True)[1] for order in _NODES}
+_BILINEAR = {
+    order: np.array([np.poly([1.0] * k + [-1.0] * (order - k)) for k in range(order, -1, -1)])
+    for order in _NODES
+}
+"""(order + 1, order + 1) coefficients of (z - 1)^k (z + 1)^(order - k), highest k first."""
 
 
 def low_passed(
@@ -45,11 +50,16 @@ def low_passed_samples(force: Array, step: float, delay: float, order: int = 1) 
 
     It is the bilinear transform of the analogue one: slow forces pass with that very delay.
     """
-    return _settled(force, *bilinear([1.0], _denominator(delay, order), fs=1.0 / step))
+    rates = (2.0 / step) ** np.arange(order, -1.0, -1.0)
+    powers = _BILINEAR[order]  # of s = 2/step (z - 1)/(z + 1)
+    bottom = (_denominator(delay, order) * rates) @ powers
+    return _settled(force, powers[-1] / bottom[0], bottom / bottom[0])
 
 
 def _settled(force: Array, top: Array, bottom: Array) -> Array:
-    return np.asarray(lfilter(top, bottom, force, zi=force[0] * lfilter_zi(top, bottom))[0])
+    """Return what a filter that passes what lasts makes of a force that began long ago."""
+    begun = np.cumsum((top - bottom)[:0:-1])[::-1]
+    return np.asarray(lfilter(top, bottom, force, zi=force[0] * begun)[0])
 
 
 def low_passed_cycle(force: Array, step: float, delay: float, order: int = 1) -> Array:
