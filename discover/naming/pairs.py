@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -22,7 +22,6 @@ def unlikely(informative: float) -> float:
 
 def pairs_with(
     lead: Entry,
-    singles: Mapping[str, Entry],
     chosen: Sequence[Variant],
     spans: Sequence[slice],
     freed: Array,
@@ -30,7 +29,10 @@ def pairs_with(
     evidence: Evidence,
     informative: float,
 ) -> list[Entry]:
-    """Return the best pair of `lead` with every other effect; `start` is misfit and chi-square."""
+    """Return the best pair of `lead` with every other effect; `start` is misfit and chi-square.
+
+    That which explains more alone in its shape of the pair is the first.
+    """
     target, chi2 = start
     index = next(i for i, v in enumerate(chosen) if v is lead.variants[0])
     own = freed[spans[index]]
@@ -51,7 +53,9 @@ def pairs_with(
             continue
         if v.effect not in best or gain[k] > best[v.effect][0]:
             best[v.effect] = (float(gain[k]), i)
-    after = chi2 - float(np.sum((basis @ target) ** 2))
+    explained = float(np.sum((basis @ target) ** 2))
+    after = chi2 - explained
+    alone = (freed @ target) ** 2 / np.maximum(np.sum(freed**2, axis=1), 1e-300)
     found = []
     for name, (drop, i) in best.items():
         v = chosen[i]
@@ -64,8 +68,7 @@ def pairs_with(
         names = (lead.effects[0], name)
         shapes = (lead.variants[0], v)
         parts = (tuple(solution[: len(own)]), (float(solution[-1]),))
-        other = singles.get(name)
-        if other is not None and other.log_evidence > lead.log_evidence:
+        if alone[spans[i].start] > explained:
             names, shapes, parts = names[::-1], shapes[::-1], parts[::-1]
         found.append(Entry(names, shapes, parts, after - drop, value))
     return found
