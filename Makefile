@@ -7,13 +7,16 @@ BIN := $(VENV)/bin
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: study test check bench calibration blind notebooks clean
+.PHONY: study test sweep check bench calibration blind notebooks clean
 
 study: $(VENV)/.installed ## discover on the shipped campaign; prints the verdict and the report's path
 	@$(BIN)/inerter discover --jobs $(JOBS)
 
-test: $(VENV)/.installed-dev ## all tests and doctests
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal
+test: $(VENV)/.installed-dev ## all tests and doctests but the sweeps
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m 'not sweep'
+
+sweep: $(VENV)/.installed-dev ## a tenth of the studies behind make calibration and make blind, held to their bars
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m sweep tests/calibration
 
 check: $(VENV)/.installed-dev ## style, types and layers
 	$(BIN)/ruff check .

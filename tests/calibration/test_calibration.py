@@ -48,7 +48,7 @@ def test_plans_hold_as_many_records_as_stated():
         assert len(case.tests) >= FEWEST or case.plan == "single"
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 def test_a_tenth_of_the_calibration_study_holds_its_bars():
     found = study.outcomes(range(1000, 1020))
     for question, (right, asked) in rates.rates(found).items():
@@ -60,7 +60,7 @@ def test_a_tenth_of_the_calibration_study_holds_its_bars():
     assert np.mean([o.equivalents for o in found if o.separable]) <= 1.4
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 def test_a_tenth_of_the_rig_study_runs_and_is_not_surer_than_right():
     found = rig.outcomes(range(300, 304))
     assert found
@@ -69,7 +69,7 @@ def test_a_tenth_of_the_rig_study_runs_and_is_not_surer_than_right():
         assert rates.limits(sum(sure), len(sure))[1] >= rates.SURE - rates.MOST_SHORTFALL
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 def test_the_proposed_next_test_tells_more_than_most_others():
     found = proposals.standings(range(60000, 60013), 3)
     assert found
