@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from discover.gap.accuracy import pooled
 from discover.gap.reversing import reversing_as_sampled
 from discover.gap.stages import left_out, record_misfit, without
@@ -81,7 +83,7 @@ def _aligned(rows: Sequence[RecordRows], fit: ModelFit) -> ModelFit:
     models = [ForceModel((*others, t), fit.model.name) for t in late]
     parameters = free_parameters(fit.model)
     begun = [fit_model(rows, m, parameters, iterations=_BEGIN) for m in models]
-    first = min(begun, key=lambda f: _gap(rows, f))
+    first = min(begun, key=lambda f: float(np.nan_to_num(_gap(rows, f), nan=np.inf)))
     best = fit_model(rows, first.model, parameters)
     return best if _gap(rows, best) < _CLEARER * _gap(rows, fit) else fit
 

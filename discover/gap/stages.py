@@ -54,9 +54,9 @@ def _of_unseen(rows: RecordRows, model: ForceModel) -> Misfit:
 def left_out(rows: Sequence[RecordRows], fit: ModelFit) -> tuple[Misfit, ...]:
     """Return each record's misfit by the model fitted to the others.
 
-    Of more than sixteen records several are left out at once. What only a record that is left out
-    tells about (the one in which a joint opens, say) stays as it is; a value of its own is the mean
-    of the others'.
+    Of more than sixteen records several are left out at once. Beside a joint or a sensor's effect
+    what only a record that is left out tells about (the one in which a joint opens, say) stays as
+    it is; a value of its own is the mean of the others'.
     """
     if len(rows) < 2:
         return ()

@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from discover.naming.scales import Scales
+from discover.naming.scales import COARSE, Scales
 from models.motion import sine_motion
 from models.terms import TERMS
 from models.terms.trials import chosen_parameters, trial_shapes, trial_size
@@ -18,7 +18,6 @@ _FEW_TESTS = 4.0  # in which a gradual change is not told from a jump
 _SOFT = 0.1  # of a play's gap, over which flanks of rubber are met
 _MOST_OWN = 64  # tests, of which each may have its own value
 _IN_BAND = 0.1  # rad of the fastest test, from which a filter's own time constant shows
-_COARSE = 8.0  # samples, up to which a digital filter is not as an analogue one
 
 
 @dataclass(frozen=True)
@@ -155,7 +154,7 @@ def _delay(scales: Scales) -> list[Variant]:
     filtered = [
         _one("time-delay", 1, probe, filter_order=order, digital=digital)
         for order in (1.0, 2.0, 4.0)
-        for digital in ((0.0, 1.0) if probe < _COARSE * scales.step else (0.0,))
+        for digital in ((0.0, 1.0) if probe < COARSE * scales.step else (0.0,))
     ]
     own = [[Part("time-delay", {"only": n}, probe) for n in _numbers(scales)]]
     return sampled + filtered + _each_its_own(own)
@@ -337,7 +336,7 @@ def _gain(scales: Scales) -> list[Variant]:
         _one("sensor-gain", int(t > _IN_BAND), 1e-3, side=1.0,
              filter_time=float(t / scales.omega), digital=digital)
         for t in np.geomspace(0.01, 1.0, 8)
-        for digital in ((0.0, 1.0) if t / scales.omega < _COARSE * scales.step else (0.0,))
+        for digital in ((0.0, 1.0) if t / scales.omega < COARSE * scales.step else (0.0,))
     ]
     drooping = [
         _one("sensor-gain", 1, -1e-3, side=1.0, droop_time=float(t / scales.slowest))

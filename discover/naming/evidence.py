@@ -127,9 +127,10 @@ def usual_left(rows: Sequence[RecordRows], tolerated: float) -> tuple[float, flo
     """Return the shares of the misfit at which a shape, or a joint, is likely not the effect's.
 
     A shape that is really there leaves a few per cent of the misfit of many tests, up to 4.5 in
-    blind studies; one that is not, but the nearest in the catalogue, 7.6 and up. With a few tests
-    a wrong shape is hardly told from one that is right beside something small; nor is it where
-    shapes that were added before may be what is left.
+    blind studies; one that is not, but the nearest in the catalogue, 7.6 and up: even odds are
+    given just beyond the least. With a few tests a wrong shape is hardly told from one that is
+    right beside something small; nor is it where shapes that were added before may be what is
+    left.
     """
     if len(rows) < FEW:
         return _LEFT_OF_FEW, _LEFT_OF_FEW

@@ -26,7 +26,7 @@ from models.constitutive import WHOLE_ORDERS, FittedTerm, ForceModel
 
 _FIXED_SHAPES = ("form", "side", "power", "threshold", "inside", "refill", "resampled",
                  "one_way", "from_test", "over", "only", "sampling", "filter_order",
-                 "load", "load_power")
+                 "digital", "load", "load_power")
 _APART = 0.1  # of orders and powers: a free one from the whole ones in the same model
 _WHOLE_POWERS = {"viscous-damping": 1.0, "quadratic-damping": 2.0}
 _STEP = 1e-4  # of a value, for its tangent

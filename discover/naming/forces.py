@@ -10,12 +10,14 @@ import numpy as np
 from discover.motion_fit import Observation
 from discover.naming.last import Last, key_of
 from discover.naming.late import (
+    ForceOn,
     aligned,
     at,
     from_cycle,
     is_digital,
     low_passed,
     low_passed_digitally,
+    shows,
     summed,
 )
 from models.checks import Array
@@ -226,19 +228,27 @@ def _remembered(cycle: Motion, model: ForceModel, plain: ForceModel) -> Array:
     return _CHANGES.of(cycle, key_of(steady), change)
 
 
+def _on_record(model: ForceModel) -> ForceOn:
+    return lambda there: _force(there, model)
+
+
+def _on_motion(model: ForceModel) -> ForceOn:
+    return lambda there: model.force(there.motion)
+
+
 def _low_passed(
     observation: Observation, model: ForceModel, delay: float, order: int, *, digital: bool
 ) -> Array:
     """Return the steady force behind a low-pass that delays slow forces, (N,) at the samples."""
     model = steady_part(model)
 
-    def force(there: Observation) -> Array:
-        return _force(there, model)
-
+    force = _on_record(model)
     if digital and is_digital(observation, delay):
         return low_passed_digitally(observation, force, key_of(model), delay, order)
     if any(_of_samples(t) for t in model.terms):
-        return summed(observation, force, delay, order)
+        if not shows(observation, delay):
+            return summed(observation, force, delay, order)
+        force = _on_motion(model)  # such a filter rounds what samples do
     return low_passed(observation, force, key_of(model), delay, order)
 
 

@@ -16,7 +16,7 @@ Value = TypeVar("Value")
 class Last(Generic[Value]):
     """Of each motion the last value and what it was made for.
 
-    It does not keep motions, and threads may share it.
+    What was made for a motion is forgotten with it. Threads may share one.
     """
 
     def __init__(self) -> None:
@@ -37,10 +37,11 @@ class Last(Generic[Value]):
         known = self._known.get(id(motion))
         if known is not None and known[0]() is motion and known[1] == key:
             return known[2]
-        value = make()
-        if len(self._known) >= _MOST_KNOWN:
+        value, owner = make(), id(motion)
+        if owner not in self._known and len(self._known) >= _MOST_KNOWN:
             self._known.pop(next(iter(list(self._known))), None)  # by another thread already
-        self._known[id(motion)] = ref(motion), key, value
+        forgotten = ref(motion, lambda _: self._known.pop(owner, None))
+        self._known[owner] = forgotten, key, value
         return value
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from discover.motion_fit import Lines, Observation
 from discover.naming.last import Last
+from discover.naming.scales import COARSE
 from models.checks import Array
 from models.terms.low_pass import earlier, low_passed_lines, low_passed_samples
 from models.terms.time_delay import Late, read_late
@@ -17,11 +18,11 @@ from models.terms.time_delay import Late, read_late
 ForceOn = Callable[[Observation], Array]
 
 _BEYOND = 4  # samples beyond a delay, that a spline needs
-_RESOLVED = 4.0  # steps of a cycle's grid, from which a filter's time constant shows on it
+_RESOLVED = 8.0  # steps of a cycle's grid, from which a filter's time constant shows on it
 _FINEST = 65536  # points of a cycle: beyond them are harmonics that no record shows
 _REGULAR = 0.1  # of the sampling interval, by which times of regular samples differ
 _MOST_MISSING = 16  # samples in a row
-_DIGITAL = 8.0  # samples of delay, from which a digital filter is as an analogue one
+_DIGITAL = 0.01, COARSE  # samples of delay, between which a digital filter is its own
 _SETTLES = 20.0  # delays, after which a filter has forgotten
 
 
@@ -66,13 +67,23 @@ def low_passed(
         Of the filter.
     """
     cycle = observation.cycle
-    if cycle is None or delay <= _RESOLVED * cycle.step:
+    if cycle is None or not shows(observation, delay):
         points = math.ceil(math.log2(_RESOLVED / (observation.frequency * delay)))
         cycle = observation.cycle_of(min(2**points, _FINEST))
     there = replace(observation, motion=cycle)
-    lines = _LINES.of(cycle, key, lambda: np.fft.rfft(force(there)))
+    lines = _LINES.of(cycle, (key, _grid(observation)), lambda: np.fft.rfft(force(there)))
     passed = low_passed_lines(lines, cycle.time.size, cycle.step, delay, order)
     return from_cycle(observation, passed)
+
+
+def shows(observation: Observation, delay: float) -> bool:
+    """Tell whether a low-pass's delay (s) shows on the grid of the record's cycle."""
+    return observation.cycle is not None and delay > _RESOLVED * observation.cycle.step
+
+
+def _grid(observation: Observation) -> int:
+    """Return the number of points on which what has memory is evaluated."""
+    return 0 if observation.cycle is None else observation.cycle.time.size
 
 
 def summed(observation: Observation, force: ForceOn, delay: float, order: int) -> Array:
@@ -95,8 +106,17 @@ def aligned(
 
 
 def is_digital(observation: Observation, delay: float) -> bool:
-    """Tell whether a digital filter of a delay (s) differs from an analogue one on a record."""
-    return delay < _DIGITAL * _step(observation.motion.time)
+    """Tell whether a digital filter of a delay (s) differs from an analogue one on a record.
+
+    Of a record whose samples do not follow each other evenly nothing digital is known.
+    """
+    own = observation.motion.time
+    step = _step(own)
+    least, most = _DIGITAL
+    if not least * step < delay < most * step:
+        return False
+    spacing = np.diff(_with_missing(own, step))
+    return bool(np.abs(spacing - step).max() < _REGULAR * step)
 
 
 def low_passed_digitally(
@@ -104,7 +124,7 @@ def low_passed_digitally(
 ) -> Array:
     """Return a force behind a low-pass that works on the samples, for long before the record."""
     own = observation.motion.time
-    longer = _longer(observation, math.ceil(_SETTLES * _DIGITAL))
+    longer = _longer(observation, math.ceil(_SETTLES * _DIGITAL[1]))
     before = _BEFORE.of(longer.motion, key, lambda: force(longer))
     passed = low_passed_samples(before, _step(own), delay, order)
     return passed[np.searchsorted(longer.motion.time, own)]
@@ -125,7 +145,7 @@ def _longer(observation: Observation, samples: int) -> Observation:
         after = own[-1] + beyond if samples < 0 else own[:0]
         return at(observation, np.concatenate([before, _with_missing(own, step), after]))
 
-    return _LONGER.of(observation.motion, samples, make)
+    return _LONGER.of(observation.motion, (samples, _grid(observation)), make)
 
 
 def _with_missing(time: Array, step: float) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 
 from discover.motion_fit import Observation
 
+COARSE = 8.0  # samples, up to which a digital filter is not as an analogue one
 _ANOTHER_RATE = 1.05  # times the sampling interval of another record
 
 

@@ -34,7 +34,8 @@ def low_passed(
     order : int
         1 to 4.
     digital : bool
-        Whether it works on the record's samples. A cycle's grid has none: there it does not.
+        Whether it works on the record's samples. Of a motion that repeats exactly, as on the grid
+        of a simulated cycle, the samples are not known: there it does not.
     """
     if motion.periodic:
         return low_passed_cycle(force, motion.step, delay, order)

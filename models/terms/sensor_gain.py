@@ -35,7 +35,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         return np.asarray(force * (1.0 + coefficient * settled))
     slow = shape["filter_time"] or shape["droop_time"]
     if slow > 0.0:
-        digital = shape["digital"] > 0.0
+        digital = shape["digital"] > 0.0 and shape["filter_time"] > 0.0
         return force + coefficient * low_passed(force, motion, slow, digital=digital)
     if shape["load_power"] > 0.0:
         loaded = (np.abs(force) / (shape["load"] or 1.0)) ** shape["load_power"]

@@ -21,6 +21,13 @@ from models.terms import TERMS
 from tests.discover.gap_data import campaign, device
 
 
+def test_how_a_channel_is_made_is_chosen_and_not_fitted():
+    late = model(("time-delay", 1e-3, {"filter_order": 2.0, "digital": 1.0}))
+    gain = model(("sensor-gain", 0.1, {"filter_time": 1e-3, "digital": 1.0}))
+    assert [p.shape for p in free_parameters(late)] == [None]
+    assert [p.shape for p in free_parameters(gain)] == [None, "filter_time"]
+
+
 def rows_of(law, **options):
     return [record_rows(observe(r)) for r in campaign(law, **options).records]
 

@@ -75,17 +75,67 @@ def test_a_gain_behind_a_filter_reads_a_late_channel_by_both_phasors(made, passe
     np.testing.assert_allclose(found, exact, atol=1e-4 * np.abs(phasor))
 
 
-@pytest.mark.parametrize("delay", [3e-3, 6e-3])
-def test_a_low_pass_rounds_friction_s_jumps_as_its_differential_equation_does(delay):
-    """Jumps far shorter than the samples and than the filter, which is within few samples."""
+@pytest.mark.parametrize(
+    "made",
+    [{"resampled": 1.0}, {"filter_order": 1.0, "digital": 1.0}, {"filter_order": 1.0}],
+    ids=["aligned", "digital", "filtered"],
+)
+def test_impacts_are_resolved_behind_a_late_channel_whatever_was_asked_before(made):
+    """What is remembered of a coarse cycle is not said of a fine one, nor the other way."""
+    record = campaign(device, noise=0.0).records[0]
+    play = {"gap": 1e-3, "contact": 200.0, "loss": 0.15, "inside": 0.0}
+    late = 3e-3 if len(made) == 2 or "resampled" in made else 9.0 / 8192 / record.frequency
+    terms = FittedTerm("backlash", 1.0, play), FittedTerm("time-delay", late, made)
+    model = ForceModel((*MODEL.terms, *terms))
+    fresh = {fine: model_force(observe(record), model, resolved=fine) for fine in (False, True)}
+    assert np.abs(fresh[True] - fresh[False]).max() > 0.1
+    for order in ((False, True), (True, False)):
+        same = observe(record)
+        for fine in order:
+            np.testing.assert_array_equal(model_force(same, model, resolved=fine), fresh[fine])
+
+
+@pytest.mark.parametrize("slow", [0.02, 0.08])
+def test_a_slow_filter_rounds_the_jumps_of_an_aligned_channel(slow):
     record = campaign(device, noise=0.0).records[0]
     observation = observe(record)
+    shape = {"transition_speed": 1e-3 * 2.0 * np.pi * record.frequency * record.amplitude}
+    model = ForceModel(
+        (
+            FittedTerm("coulomb-friction", 50.0, shape),
+            FittedTerm("time-delay", 3e-3, {"resampled": 1.0}),
+            FittedTerm("sensor-gain", 0.2, {"filter_time": slow}),
+        )
+    )
+    step = record.time[1] - record.time[0]
+    long = step * np.arange(-4000, record.time.size)
+    jumps = 50.0 * np.tanh(np.cos(2.0 * np.pi * record.frequency * long) / 1e-3)
+    dense = np.linspace(long[0], long[-1], 40 * long.size)
+    late = np.interp(dense - 3e-3, long, jumps)
+    kept = np.exp(-(dense[1] - dense[0]) / slow)
+    passed = np.interp(long, dense, lfilter([1.0 - kept], [1.0, -kept], late))
+    exact = (np.interp(long - 3e-3, long, jumps) + 0.2 * passed)[4000:]
+    exact = exact[np.searchsorted(record.time, observation.time - 0.5 * step)]
+    found = model_force(observation, model)
+    np.testing.assert_allclose(found, exact, atol=0.01 * 50.0)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.3])
+@pytest.mark.parametrize("delay", [3e-3, 6e-3, 8e-3])
+def test_a_low_pass_rounds_friction_s_jumps_as_its_differential_equation_does(delay, phase):
+    """Jumps far shorter than the samples and than the filter, which is within few samples.
+
+    They lie on points of a cycle's grid, or between them.
+    """
+    record = campaign(device, noise=0.0).records[0]
+    place = record.amplitude * np.sin(2.0 * np.pi * record.frequency * record.time + phase)
+    observation = observe(replace(record, displacement=place))
     shape = {"transition_speed": 1e-3 * 2.0 * np.pi * record.frequency * record.amplitude}
     friction = FittedTerm("coulomb-friction", 50.0, shape)
     filtered = FittedTerm("time-delay", delay, {"filter_order": 1.0})
     found = model_force(observation, ForceModel((friction, filtered)))
     dense = np.linspace(0.0, 2.0, 2_000_001)  # cycles; in the second the filter has settled
-    sign = np.tanh(np.cos(2.0 * np.pi * dense) / 1e-3)
+    sign = np.tanh(np.cos(2.0 * np.pi * dense + phase) / 1e-3)
     kept = np.exp(-(dense[1] / record.frequency) / delay)
     passed = 50.0 * lfilter([1.0 - kept], [1.0, -kept], sign)
     exact = np.interp(1.0 + np.mod(observation.time * record.frequency, 1.0), dense, passed)
