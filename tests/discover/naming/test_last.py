@@ -22,10 +22,8 @@ def test_it_is_forgotten_with_its_motion():
     class Value:
         pass
 
-    last, motion, value = Last(), sine_motion(0.01, 1.0), Value()
-    last.of(motion, "a", lambda: value)
-    kept = ref(value)
-    del value
+    last, motion = Last(), sine_motion(0.01, 1.0)
+    kept = ref(last.of(motion, "a", Value))
     assert kept() is not None
     del motion
     gc.collect()
