@@ -20,6 +20,7 @@ POWER_LAW = "power-law-damping"
 _LINEAR = "viscous-damping"
 _WHOLE = {_LINEAR: 1.0, "quadratic-damping": 2.0}
 _NEAR = 0.15  # of a whole power; that of turbulent flow in smooth pipes, 1.75, is further
+_LIKELIER = 3.0  # times is a whole power, before any test, than another one near it
 _LOW = 1.0  # exponent, below which a law is like friction's approach to its limit
 
 
@@ -73,7 +74,7 @@ def as_whole_power(
     if not near and not noise_alone(other):
         return None
     both = contest.probabilities[name] + contest.probabilities[POWER_LAW]
-    odds = odds_of_a_parameter(contest.rows)
+    odds = odds_of_a_parameter(contest.rows) * (_LIKELIER if near else 1.0)
     chances = {
         **contest.probabilities, name: both * odds / (1.0 + odds), POWER_LAW: both / (1.0 + odds),
     }
