@@ -241,7 +241,6 @@ def _low_passed(
 ) -> Array:
     """Return the steady force behind a low-pass that delays slow forces, (N,) at the samples."""
     model = steady_part(model)
-
     force = _on_record(model)
     if digital and is_digital(observation, delay):
         return low_passed_digitally(observation, force, key_of(model), delay, order)
