@@ -194,7 +194,7 @@ def run_contest(
     if ranked and ranked[0].chi2 > noise + 20.0:
         for lead in ranked[:_PAIR_CANDIDATES]:
             start = (target, chi2)
-            pairs += pairs_with(lead, chosen, spans, freed, start, evidence, informative)
+            pairs += pairs_with(lead, best, chosen, spans, freed, start, evidence, informative)
     everything = sorted([nothing, *ranked, *pairs], key=lambda e: -e.log_evidence)
     usual = usual_left(rows, tolerated)
     probabilities = probabilities_of(everything, effects, chi2 - noise, informative, usual)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -22,6 +22,7 @@ def unlikely(informative: float) -> float:
 
 def pairs_with(
     lead: Entry,
+    singles: Mapping[str, Entry],
     chosen: Sequence[Variant],
     spans: Sequence[slice],
     freed: Array,
@@ -31,7 +32,8 @@ def pairs_with(
 ) -> list[Entry]:
     """Return the best pair of `lead` with every other effect; `start` is misfit and chi-square.
 
-    That which explains more alone in its shape of the pair is the first.
+    The first is the stronger: of added forces that which explains more alone in its shape of the
+    pair. What else an effect may be, and how large, only its best entry in `singles` knows.
     """
     target, chi2 = start
     index = next(i for i, v in enumerate(chosen) if v is lead.variants[0])
@@ -68,7 +70,12 @@ def pairs_with(
         names = (lead.effects[0], name)
         shapes = (lead.variants[0], v)
         parts = (tuple(solution[: len(own)]), (float(solution[-1]),))
-        if alone[spans[i].start] > explained:
+        if all(TERMS[e].acts == "force" for e in names):
+            stronger = alone[spans[i].start] > explained
+        else:
+            other = singles.get(name)
+            stronger = other is not None and other.log_evidence > lead.log_evidence
+        if stronger:
             names, shapes, parts = names[::-1], shapes[::-1], parts[::-1]
         found.append(Entry(names, shapes, parts, after - drop, value))
     return found

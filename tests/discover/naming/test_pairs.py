@@ -33,9 +33,30 @@ def test_the_first_of_a_pair_explains_more_in_the_shape_that_it_has_there(lead, 
     chi2 = float(target @ target)
     entry = Entry((lead.effect,), (lead,), ((1.0,),), 0.5 * chi2, 0.0)
     spans = [slice(i, i + 1) for i in range(3)]
-    found = pairs_with(entry, CHOSEN, spans, COLUMNS, (target, chi2), lambda left, _: -left, 8.0)
+    singles = {v.effect: Entry((v.effect,), (v,), ((1.0,),), 0.0, 1.0) for v in CHOSEN}
+    start = target, chi2
+    found = pairs_with(entry, singles, CHOSEN, spans, COLUMNS, start, lambda left, _: -left, 8.0)
     (pair,) = found
     assert pair.effects[0] == first
     values = {v.effect: c[0] for v, c in zip(pair.variants, pair.coefficients, strict=True)}
     assert values == pytest.approx({QUADRATIC.effect: truth[0], SLOW.effect: truth[2]})
     assert pair.chi2 == pytest.approx(0.0, abs=1e-9 * chi2)
+
+
+@pytest.mark.parametrize("better", ["time-delay", "sensor-gain"])
+def test_the_first_of_two_sensors_is_the_one_of_the_best_entry_alone(better):
+    """How large a gain behind a filter may be its column does not know."""
+    chosen = [variant("sensor-gain", filter_time=1e-3), variant("time-delay", filter_order=1.0)]
+    columns = COLUMNS[[0, 2]]
+    target = np.array([10.0, 1.0]) @ columns
+    chi2 = float(target @ target)
+    singles = {
+        v.effect: Entry((v.effect,), (v,), ((1.0,),), 0.0, float(v.effect == better))
+        for v in chosen
+    }
+    spans = [slice(0, 1), slice(1, 2)]
+    start = target, chi2
+    (pair,) = pairs_with(
+        singles["sensor-gain"], singles, chosen, spans, columns, start, lambda left, _: -left, 8.0
+    )
+    assert pair.effects[0] == better
