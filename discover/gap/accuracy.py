@@ -64,3 +64,9 @@ def pooled(misfits: Sequence[Misfit], *, noise: bool = False) -> float:
     error = sum(m.samples * (m.noise if noise else m.error) for m in misfits)
     force = sum(m.samples * m.force for m in misfits)
     return 100.0 * float(np.sqrt(error / force)) if force else 0.0
+
+
+def records_alike(misfits: Sequence[Misfit]) -> float:
+    """Return the root mean square of records' own relative gaps, %: the quiet count as the loud."""
+    squares = [m.error / max(m.force, 1e-300) for m in misfits]
+    return 100.0 * float(np.sqrt(np.mean(squares))) if squares else 0.0

@@ -127,15 +127,9 @@ def _doubts(baseline: Baseline, rounds: Sequence[NamedEffect]) -> list[Finding]:
     for entry in rounds:
         if entry.parameters.get("only"):
             continue  # it is said apart what values of every test's own tell
-        before, after = entry.unseen
-        if before is not None and after is not None and after > _WORSE * before:
-            result.append(
-                Finding(
-                    "warning",
-                    f"{entry.effect} lowers the gap of the records that are fitted, but raises that"
-                    f" of those that are not from {before:.3g} % to {after:.3g} %.",
-                )
-            )
+        raised = _raised(entry)
+        if raised is not None:
+            result.append(Finding("warning", raised))
         if entry.interval[0] < 0.0 < entry.interval[1]:
             result.append(
                 Finding(
@@ -154,6 +148,28 @@ def _doubts(baseline: Baseline, rounds: Sequence[NamedEffect]) -> list[Finding]:
             )
         )
     return result
+
+
+def _raised(entry: NamedEffect) -> str | None:
+    """Return which gap a round raises, None where it raises none."""
+    others = ""
+    before, after = entry.unseen
+    if before is not None and after is not None and after > _WORSE * before:
+        others = f"from {before:.3g} % to {after:.3g} %"
+    if entry.gap[1] > _WORSE * entry.gap[0]:
+        return (
+            f"{entry.effect} lowers the gap of records that count alike from {entry.alike[0]:.3g} %"
+            f" to {entry.alike[1]:.3g} %, but raises the pooled one from {entry.gap[0]:.3g} % to"
+            f" {entry.gap[1]:.3g} %{f' (of records not fitted {others})' if others else ''}:"
+            " records of little force gain what those of much lose, as where more than one effect"
+            " is missing."
+        )
+    if others:
+        return (
+            f"{entry.effect} lowers the fitted records' misfit in terms of their noise, but raises"
+            f" the gap of those that are not fitted {others}."
+        )
+    return None
 
 
 def _noisy(rows: Sequence[RecordRows], at: Stage) -> list[Finding]:

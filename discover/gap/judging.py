@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from discover.gap.accuracy import Misfit, pooled
-from discover.gap.stages import Stage, seen_gap
+from discover.gap.accuracy import pooled
+from discover.gap.stages import Stage, seen_alike, seen_gap
 from discover.naming.contest import Contest
 from discover.naming.fit import ModelFit, misfits
 from discover.naming.rows import RecordRows
@@ -29,8 +29,7 @@ def helps(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
     """
     if seen_gap(rows, after) <= (1.0 - _NOTICED) * seen_gap(rows, before):
         return True
-    seen = [i for i, r in enumerate(rows) if not r.observation.held_out]
-    was, now = (_by_record([at.misfits[i] for i in seen]) for at in (before, after))
+    was, now = (seen_alike(rows, at) ** 2 for at in (before, after))
     return now < (1.0 - _CLEARLY) * was
 
 
@@ -46,11 +45,6 @@ def predicts(rows: Sequence[RecordRows], before: Stage, after: Stage) -> bool:
     # One record alone may show an earlier effect: left out, only chance predicts it.
     was, now = (np.log([max(m.percent, 1e-9) for m in at.unseen]) for at in (before, after))
     return bool(np.mean(now - was) < np.log1p(-_CLEARLY))
-
-
-def _by_record(misfits: Sequence[Misfit]) -> float:
-    """Return the sum of mean square relative gaps: every record counts alike."""
-    return sum(m.error / max(m.force, 1e-300) for m in misfits)
 
 
 def shows(

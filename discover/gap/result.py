@@ -60,7 +60,9 @@ class NamedEffect:
     indistinguishable: tuple[str, ...]
     """Of these, what the records can't tell from it."""
     gap: tuple[float, float]
-    """Percent before and after, fitted records."""
+    """Percent before and after, fitted records, pooled in N."""
+    alike: tuple[float, float]
+    """Likewise, root mean square of the records' own relative gaps: the quiet count as the loud."""
     unseen: tuple[float | None, float | None]
     """Likewise, on records that were not fitted; None where there is one record only."""
     dropped: tuple[str, ...]
@@ -82,6 +84,8 @@ class NamedEffect:
             "not_distinguishable_from": list(self.indistinguishable),
             "gap_before_percent": self.gap[0],
             "gap_after_percent": self.gap[1],
+            "rms_record_gap_before_percent": self.alike[0],
+            "rms_record_gap_after_percent": self.alike[1],
             "held_out_before_percent": self.unseen[0],
             "held_out_after_percent": self.unseen[1],
             "dropped": list(self.dropped),

@@ -23,7 +23,7 @@ from discover.gap.result import (
 )
 from discover.gap.rounds import Round
 from discover.gap.search import Search, search
-from discover.gap.stages import Stage, seen_gap
+from discover.gap.stages import Stage, seen_alike, seen_gap
 from discover.gap.standard_error import standard_errors
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import observe_all
@@ -201,6 +201,7 @@ def _named(baseline: Baseline, entry: Round) -> NamedEffect:
             e for e, p in alternatives if p > _EQUAL * probability and e not in (AGREES, UNKNOWN)
         ),
         gap=(seen_gap(baseline.rows, before), seen_gap(baseline.rows, after)),
+        alike=(seen_alike(baseline.rows, before), seen_alike(baseline.rows, after)),
         unseen=(_unseen(before), _unseen(after)),
         dropped=entry.dropped,
         corrected=None if entry.corrected is None else CorrectedCurve(

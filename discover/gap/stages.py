@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.gap.accuracy import Misfit, misfit, pooled
+from discover.gap.accuracy import Misfit, misfit, pooled, records_alike
 from discover.naming.fit import ModelFit, fit_model
 from discover.naming.forces import by_others, has_impacts, has_joint, model_force
 from discover.naming.polish import counted
@@ -95,9 +95,18 @@ def _tangents_of_each(
 
 
 def seen_gap(rows: Sequence[RecordRows], at: Stage) -> float:
-    """Return the gap of the fitted records, %."""
+    """Return the gap of the fitted records, pooled in N, %."""
+    return pooled(_seen(rows, at))
+
+
+def seen_alike(rows: Sequence[RecordRows], at: Stage) -> float:
+    """Return the root mean square of the fitted records' own relative gaps, %."""
+    return records_alike(_seen(rows, at))
+
+
+def _seen(rows: Sequence[RecordRows], at: Stage) -> list[Misfit]:
     found = zip(rows, at.misfits, strict=True)
-    return pooled([m for r, m in found if not r.observation.held_out])
+    return [m for r, m in found if not r.observation.held_out]
 
 
 def without(model: ForceModel, effect: str) -> ForceModel:

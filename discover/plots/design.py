@@ -31,8 +31,8 @@ def sections(document: Mapping[str, Any]) -> str:
         axes = drawing.subplots(1, len(shown), sharex=True, sharey=True, squeeze=False)[0]
         for one, (title, geometry) in zip(axes, shown, strict=True):
             _section(one, geometry)
-            turns, bore = geometry["turns"], 2e3 * geometry["channel_radius"]
-            wound = f"{turns:.3g} turn{'' if turns == 1.0 else 's'}"
+            turns, bore = f"{geometry['turns']:.3g}", 2e3 * geometry["channel_radius"]
+            wound = f"{turns} turn{'' if turns == '1' else 's'}"
             one.set_title(f"{title}: {wound}, bore {bore:.3g} mm")
             one.set_xlabel("Radius (mm)")
         axes[0].set_ylabel("Height (mm)")

@@ -36,14 +36,18 @@ def unit(text: str) -> Markup:
 
 
 def prose(text: str) -> Markup:
-    """Return text with what stands between backticks as code, as HTML.
+    """Return a sentence as HTML: code between backticks, raised powers, percents kept together.
 
     Examples
     --------
     >>> str(prose("run `inerter gap <x>`"))
     'run <code>inerter gap &lt;x&gt;</code>'
+    >>> str(prose("5 % of it grows as frequency^(0.4 ± 0.1)")).replace(words.THIN_SPACE, "_")
+    '5_% of it grows as frequency<sup>0.4 ± 0.1</sup>'
     """
-    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+    plain = str(escape(text)).replace(" %", f"{words.THIN_SPACE}%")
+    raised = re.sub(r"\^\(([^()]+)\)", r"<sup>\1</sup>", plain)
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", raised))
 
 
 def shape(term: Mapping[str, Any]) -> str:

@@ -33,6 +33,7 @@ _VERDICTS = {
 _BY_SHAPES = "what is left is no more than noise and what the named shapes may be wrong by"
 _NOT_SHOWN = "nothing is missing that these tests would show"
 _UNASKED = "something is missing that none of the effects asked for explains"
+_FALLS = 0.995  # of a gap: what does not fall below it is not said to fall
 _REFITTED = 1.01  # of a gap, from which the model's own coefficients are said to have closed some
 
 
@@ -109,8 +110,17 @@ def _round(entry: Mapping[str, Any]) -> str:
         text += f", or {listed(others, last='or')}"
     return (
         f"{text}; gap {percent(entry['gap_before_percent'])} to"
-        f" {percent(entry['gap_after_percent'])}{_corrected(entry.get('corrected'))}"
+        f" {percent(entry['gap_after_percent'])}{_alike(entry)}"
+        f"{_corrected(entry.get('corrected'))}"
     )
+
+
+def _alike(entry: Mapping[str, Any]) -> str:
+    """Return what a round gains with every record counting alike, where the pooled gap hides it."""
+    if entry["gap_after_percent"] <= _FALLS * entry["gap_before_percent"]:
+        return ""
+    before, after = (entry[f"rms_record_gap_{at}_percent"] for at in ("before", "after"))
+    return f" pooled, {percent(before)} to {percent(after)} with every record counting alike"
 
 
 def _corrected(entry: Mapping[str, Any] | None) -> str:

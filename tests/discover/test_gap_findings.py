@@ -50,6 +50,15 @@ def test_a_round_that_raises_the_gap_of_unfitted_records_is_told(answered):
     assert told(answered, unseen=(None, None)) == []
 
 
+def test_a_round_that_serves_the_quiet_at_the_cost_of_the_loud_is_told(answered):
+    raised = {"gap": (17.0, 20.0), "alike": (60.0, 21.0)}
+    (only,) = told(answered, unseen=(17.0, 21.0), **raised)
+    assert "count alike from 60 % to 21 %, but raises the pooled one from 17 % to 20 %" in only
+    assert "records not fitted from 17 % to 21 %" in only
+    (only,) = told(answered, unseen=(None, None), **raised)
+    assert "records not fitted" not in only
+
+
 def test_a_coefficient_that_is_not_told_from_zero_is_told(answered):
     (only,) = told(answered, interval=(-3.0, 80.0))
     assert "not told from zero" in only

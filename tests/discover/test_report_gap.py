@@ -43,6 +43,14 @@ def test_lines_name_effects_with_alternatives_and_both_gaps():
     )
 
 
+def test_a_round_that_serves_the_quiet_records_says_so():
+    document = sample_gap_document()
+    alike = {"rms_record_gap_before_percent": 61.0, "rms_record_gap_after_percent": 20.4}
+    document["rounds"] = [{**document["rounds"][0], "gap_after_percent": 19.5, **alike}]
+    text = " ".join(gap_lines(document)).replace("\u202f", " ")
+    assert "gap 18.3 % to 19.5 % pooled, 61 % to 20.4 % with every record counting alike" in text
+
+
 @pytest.mark.parametrize("verdict", ["agrees", "unexplained"])
 def test_nothing_named_still_reports(verdict):
     document = sample_gap_document()
