@@ -233,13 +233,14 @@ def _screened(
 def _can_show(v: Variant, terms: set[str]) -> bool:
     """Tell whether a shape is told apart.
 
-    Friction near a place is only from friction all along, and values of every test's own are not
-    from the times at which a joint's flanks are met.
+    Friction near a place, or while it warms, is only told from friction that is there all along,
+    and values of every test's own are not from the times at which a joint's flanks are met.
     """
     shape = v.parts[0].shape
     if shape.get("only", 0.0) and any(is_joint(t) for t in terms):
         return False
-    return not shape.get("width", 0.0) or "coulomb-friction" in terms
+    warming = v.effect == "thermal-drift" and shape.get("power", 1.0) == 0.0
+    return not (warming or shape.get("width", 0.0)) or "coulomb-friction" in terms
 
 
 def _starts(singles: Sequence[Entry]) -> dict[str, tuple[Entry, ...]]:

@@ -12,6 +12,7 @@ from models.checks import Array
 from models.terms import TERMS
 
 _PRIOR = -6.0
+_NEARLY = 0.9  # of the correlation of two shapes of an effect, from which they are alike
 _DOUBT = 0.17  # nats a row: two shapes explain more by chance
 
 
@@ -33,7 +34,8 @@ def pairs_with(
     """Return the best pair of `lead` with every other effect; `start` is misfit and chi-square.
 
     The first is the stronger: of added forces that which explains more alone in its shape of the
-    pair. What else an effect may be, and how large, only its best entry in `singles` knows.
+    pair or one that is nearly the same. What else an effect may be, and how large, only its best
+    entry in `singles` knows.
     """
     target, chi2 = start
     index = next(i for i, v in enumerate(chosen) if v is lead.variants[0])
@@ -57,7 +59,18 @@ def pairs_with(
             best[v.effect] = (float(gain[k]), i)
     explained = float(np.sum((basis @ target) ** 2))
     after = chi2 - explained
-    alone = (freed @ target) ** 2 / np.maximum(np.sum(freed**2, axis=1), 1e-300)
+    unit = freed / np.maximum(np.linalg.norm(freed, axis=1), 1e-300)[:, None]
+    alone = (unit @ target) ** 2
+
+    def nearly(i: int) -> float:
+        """Return what a shape explains alone, or one of the effect's that is nearly the same."""
+        own = [
+            spans[j].start for j, v in enumerate(chosen)
+            if v.effect == chosen[i].effect and len(v.parts) == 1
+        ]
+        near = np.abs(unit[own] @ unit[spans[i].start]) > _NEARLY
+        return float(np.max(alone[own], where=near, initial=alone[spans[i].start]))
+
     found = []
     for name, (drop, i) in best.items():
         v = chosen[i]
@@ -71,7 +84,7 @@ def pairs_with(
         shapes = (lead.variants[0], v)
         parts = (tuple(solution[: len(own)]), (float(solution[-1]),))
         if all(TERMS[e].acts == "force" for e in names):
-            stronger = alone[spans[i].start] > explained
+            stronger = nearly(i) > max(explained, nearly(index))
         else:
             other = singles.get(name)
             stronger = other is not None and other.log_evidence > lead.log_evidence

@@ -74,6 +74,21 @@ def test_two_missing_effects_are_found_in_two_rounds():
     assert found.verdict == "closed"
 
 
+@pytest.mark.parametrize("settling", [0.05, 0.2])
+def test_friction_that_sets_in_during_a_record_is_friction_first(settling):
+    """Warming seals explain it alone, and would be a change of a friction that the model lacks."""
+    found = close_gap(
+        campaign(
+            lambda t, x, v, a: device(t, x, v, a)
+            + 40.0 * np.sign(v) * -np.expm1(-t / settling)
+        ),
+        BASE,
+    )
+    assert found.rounds[0].effect == "coulomb-friction"
+    assert found.rounds[0].probability > 0.9
+    assert found.final_gap_percent < 1.6 * found.noise_percent
+
+
 def test_fixed_coefficients_show_an_added_mass_that_a_fit_absorbs():
     given = ForceModel((FittedTerm("inertia", 100.0), FittedTerm("viscous-damping", 800.0)))
     data = campaign(device)

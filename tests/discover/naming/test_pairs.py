@@ -43,6 +43,26 @@ def test_the_first_of_a_pair_explains_more_in_the_shape_that_it_has_there(lead, 
     assert pair.chi2 == pytest.approx(0.0, abs=1e-9 * chi2)
 
 
+@pytest.mark.parametrize(
+    ("stiff", "first"),
+    [((1.0, 0.0, 0.0), "coulomb-friction"), ((0.0, 1.0, 0.0), "power-law-damping")],
+)
+def test_what_nearly_the_same_shape_explains_counts_as_the_shapes_own(stiff, first):
+    """Friction that deflects a little longer beside a power law is the friction it is alone."""
+    short, long = (variant("coulomb-friction", presliding=z) for z in (1e-6, 5e-5))
+    chosen = [SLOW, short, long]
+    columns = np.array([[-0.2, 0.7, 0.8], stiff, [0.95, -0.312, 0.0]])
+    target = np.array([0.2, 0.1, 0.2])
+    start = target, float(target @ target)
+    spans = [slice(i, i + 1) for i in range(3)]
+    lead = Entry((SLOW.effect,), (SLOW,), ((1.0,),), 0.0, 0.0)
+    (pair,) = pairs_with(lead, {}, chosen, spans, columns, start, lambda left, _: -left, 8.0)
+    assert dict(pair.variants[pair.effects.index("coulomb-friction")].parts[0].shape) == {
+        "presliding": 5e-5
+    }
+    assert pair.effects[0] == first
+
+
 @pytest.mark.parametrize("better", ["time-delay", "sensor-gain"])
 def test_the_first_of_two_sensors_is_the_one_of_the_best_entry_alone(better):
     """How large a gain behind a filter may be its column does not know."""
