@@ -92,6 +92,8 @@ class Next:
     rejected: str | None = None
     waits: bool = False
     """An effect was named that the curves of what was added may explain better."""
+    nothing_alone: bool = False
+    """An effect was named that explains little without another one, or is impossible then."""
 
 
 def next_round(
@@ -118,8 +120,9 @@ def next_round(
         return Next(contest)
     tried = _tried(rows, fitted, now, left, contest, fits.get(name), name)
     other = contest.partner(name)
-    if tried.rejected is not None and other is not None:
-        # Of two that are missing the first alone may only trade one record's gap for another's.
+    if (tried.rejected is not None or tried.nothing_alone) and other is not None:
+        # Of two that are missing the first alone may only trade one record's gap for another's,
+        # or make up for the other.
         paired = contest.without_alone(name, other)
         if paired.ranked[0][0] == other:
             second = _tried(rows, fitted, now, left, paired, None, other)
@@ -226,7 +229,8 @@ def _tried(
     fit = mended(fitted, now.fit, contest, name, begun)
     gained = now.fit.chi2 - fit.chi2
     if gained < max(_TOO_LITTLE * contest.excess, _FEWEST) or impossible(fit.model, name):
-        return Next(contest.without(name, None if beyond(rows, now) else AGREES))
+        more = beyond(rows, now)
+        return Next(contest.without(name, None if more else AGREES), nothing_alone=more)
     if name == POWER_LAW and (it := as_whole_power(fitted, now.fit, contest, fit, left.effects)):
         return _tried(rows, fitted, now, left, it.contest, it.fit, it.name)
     same = with_member(fitted, now.fit, [r.effect for r in left.rounds]) if left.curves else None

@@ -8,6 +8,7 @@ import numpy as np
 
 from discover.naming.candidates import Variant
 from discover.naming.evidence import Entry, Evidence
+from discover.naming.forces import coefficient_bounds
 from models.checks import Array
 from models.terms import TERMS
 
@@ -46,6 +47,7 @@ def pairs_with(
     others = freed - (freed @ basis.T) @ basis
     power = np.sum(others**2, axis=1)
     along = others @ rest
+    value = along / np.maximum(power, 1e-300)
     apart = power > 1e-4 * np.sum(freed**2, axis=1)
     gain = np.where(apart, along**2 / np.maximum(power, 1e-300), 0.0)
     best: dict[str, tuple[float, int]] = {}
@@ -53,7 +55,7 @@ def pairs_with(
         if v.effect == lead.effects[0] or len(v.parts) > 1:
             continue
         k = spans[i].start
-        if TERMS[v.effect].nonnegative and along[k] <= 0.0:
+        if not _possible(v, value[k]):
             continue
         if v.effect not in best or gain[k] > best[v.effect][0]:
             best[v.effect] = (float(gain[k]), i)
@@ -76,7 +78,7 @@ def pairs_with(
         v = chosen[i]
         both = np.concatenate([own, freed[spans[i]]])
         solution = np.linalg.lstsq(both.T, target, rcond=1e-10)[0]
-        if TERMS[lead.effects[0]].nonnegative and solution[0] <= 0.0:
+        if not _possible(lead.variants[0], solution[0]):
             continue
         spent = lead.variants[0].shapes + len(own) + 1 + v.shapes
         value = evidence(after - drop, spent) + unlikely(informative)
@@ -92,3 +94,10 @@ def pairs_with(
             names, shapes, parts = names[::-1], shapes[::-1], parts[::-1]
         found.append(Entry(names, shapes, parts, after - drop, value))
     return found
+
+
+def _possible(variant: Variant, value: float) -> bool:
+    """Tell whether an effect can have this coefficient."""
+    part = variant.parts[0]
+    low, high = coefficient_bounds(part.shape)
+    return low <= value <= high and not (TERMS[part.id].nonnegative and value <= 0.0)

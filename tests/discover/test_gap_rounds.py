@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from discover.gap import close_gap
+from discover.gap import close_gap, rounds
 from discover.gap.accuracy import Misfit
 from discover.gap.judging import predicts, shows
+from discover.gap.mending import mended
 from discover.gap.stages import Stage
 from models.constitutive import FittedTerm, ForceModel
 from tests.discover.gap_data import campaign, device
@@ -114,6 +115,17 @@ def test_friction_is_added_though_a_second_missing_effect_widens_the_pooled_gap(
     assert {"coulomb-friction"} < named
     assert named & {"quadratic-damping", "power-law-damping"}
     assert found.final_gap_percent < 1.3 * found.noise_percent
+
+
+def test_of_two_that_are_missing_the_second_is_tried_where_the_first_alone_is_nothing(monkeypatch):
+    """What makes up for the other in its own fit may explain little until that is there."""
+    def adds_nothing(rows, fit, contest, name, begun):
+        return fit if name == "viscous-damping" else mended(rows, fit, contest, name, begun)
+
+    monkeypatch.setattr(rounds, "mended", adds_nothing)
+    both = campaign(lambda t, x, v, a: device(t, x, v, a) + 8.0)
+    found = close_gap(both, "fit:inertia", effects=["viscous-damping", "force-offset"])
+    assert [r.effect for r in found.rounds] == ["force-offset"]
 
 
 def test_a_large_offset_has_no_shape_that_could_hide_a_small_friction():

@@ -68,7 +68,7 @@ def test_the_first_of_two_sensors_is_the_one_of_the_best_entry_alone(better):
     """How large a gain behind a filter may be its column does not know."""
     chosen = [variant("sensor-gain", filter_time=1e-3), variant("time-delay", filter_order=1.0)]
     columns = COLUMNS[[0, 2]]
-    target = np.array([10.0, 1.0]) @ columns
+    target = np.array([0.2, 0.05]) @ columns
     chi2 = float(target @ target)
     singles = {
         v.effect: Entry((v.effect,), (v,), ((1.0,),), 0.0, float(v.effect == better))
@@ -80,3 +80,18 @@ def test_the_first_of_two_sensors_is_the_one_of_the_best_entry_alone(better):
         singles["sensor-gain"], singles, chosen, spans, columns, start, lambda left, _: -left, 8.0
     )
     assert pair.effects[0] == better
+
+
+@pytest.mark.parametrize(("gain", "number"), [(0.2, 1), (1.7, 0)])
+def test_a_gain_behind_a_filter_is_in_no_pair_as_greater_than_it_may_be(gain, number):
+    """A straight line to a small one meets what a great delay leaves, and is none."""
+    chosen = [QUADRATIC, variant("sensor-gain", filter_time=1e-3)]
+    target = np.array([10.0, gain]) @ COLUMNS[[0, 2]]
+    start = target, float(target @ target)
+    spans = [slice(0, 1), slice(1, 2)]
+    for lead in chosen:
+        entry = Entry((lead.effect,), (lead,), ((1.0,),), 0.0, 0.0)
+        found = pairs_with(
+            entry, {}, chosen, spans, COLUMNS[[0, 2]], start, lambda left, _: -left, 8.0
+        )
+        assert len(found) == number
