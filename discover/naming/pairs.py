@@ -47,7 +47,7 @@ def pairs_with(
     others = freed - (freed @ basis.T) @ basis
     power = np.sum(others**2, axis=1)
     along = others @ rest
-    value = along / np.maximum(power, 1e-300)
+    sizes = along / np.maximum(power, 1e-300)
     apart = power > 1e-4 * np.sum(freed**2, axis=1)
     gain = np.where(apart, along**2 / np.maximum(power, 1e-300), 0.0)
     best: dict[str, tuple[float, int]] = {}
@@ -55,7 +55,7 @@ def pairs_with(
         if v.effect == lead.effects[0] or len(v.parts) > 1:
             continue
         k = spans[i].start
-        if not _possible(v, value[k]):
+        if not _possible(v, sizes[k]):
             continue
         if v.effect not in best or gain[k] > best[v.effect][0]:
             best[v.effect] = (float(gain[k]), i)
@@ -66,12 +66,12 @@ def pairs_with(
 
     def nearly(i: int) -> float:
         """Return what a shape explains alone, or one of the effect's that is nearly the same."""
-        own = [
+        same = [
             spans[j].start for j, v in enumerate(chosen)
             if v.effect == chosen[i].effect and len(v.parts) == 1
         ]
-        near = np.abs(unit[own] @ unit[spans[i].start]) > _NEARLY
-        return float(np.max(alone[own], where=near, initial=alone[spans[i].start]))
+        near = np.abs(unit[same] @ unit[spans[i].start]) > _NEARLY
+        return float(np.max(alone[same], where=near, initial=alone[spans[i].start]))
 
     found = []
     for name, (drop, i) in best.items():
