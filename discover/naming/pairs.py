@@ -64,14 +64,16 @@ def pairs_with(
     unit = freed / np.maximum(np.linalg.norm(freed, axis=1), 1e-300)[:, None]
     alone = (unit @ target) ** 2
 
+    shapes_of: dict[str, list[int]] = {}
+    for v, span in zip(chosen, spans, strict=True):
+        if len(v.parts) == 1:
+            shapes_of.setdefault(v.effect, []).append(span.start)
+
     def nearly(i: int) -> float:
         """Return what a shape explains alone, or one of the effect's that is nearly the same."""
-        same = [
-            spans[j].start for j, v in enumerate(chosen)
-            if v.effect == chosen[i].effect and len(v.parts) == 1
-        ]
-        near = np.abs(unit[same] @ unit[spans[i].start]) > _NEARLY
-        return float(np.max(alone[same], where=near, initial=alone[spans[i].start]))
+        k, same = spans[i].start, shapes_of.get(chosen[i].effect, [])
+        near = np.abs(unit[same] @ unit[k]) > _NEARLY
+        return float(np.max(alone[same], where=near, initial=alone[k]))
 
     found = []
     for name, (drop, i) in best.items():

@@ -110,8 +110,10 @@ def thermal(scales: Scales) -> list[Variant]:
     ]
     between = between_tests("thermal-drift", scales)
     between += [
-        one("thermal-drift", 2, **{**v.parts[0].shape, "power": 0.0,
-                                    "transition_speed": scales.reversal})
+        one(
+            "thermal-drift", 2,
+            **{**v.parts[0].shape, "power": 0.0, "transition_speed": scales.reversal},
+        )
         for v in between
     ]
     return straight + saturated + seals + between

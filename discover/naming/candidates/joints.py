@@ -53,7 +53,7 @@ def cavitation(scales: Scales) -> list[Variant]:
     shares = np.linspace(0.1, 0.96, 12)
     return [
         one("cavitation", 3, limit=float(c * scales.force), contact=k * scales.omega, loss=0.3,
-             refill=refill, lag=lag / scales.omega, side=s)
+            refill=refill, lag=lag / scales.omega, side=s)
         for c in shares
         for k, refill, lag in (
             (6.0, 0.0, 0.0), (25.0, 0.0, 0.0), (25.0, 1.0, 0.0), (25.0, 1.0, 0.1),

@@ -24,8 +24,7 @@ def delay(scales: Scales) -> list[Variant]:
     rates = (0.0, scales.sampling) if scales.sampling else (0.0,)
     probe = 0.02 / scales.omega
     sampled = [
-        one("time-delay", shapes + (rate > 0.0), probe, resampled=degree,
-             sampling=rate)
+        one("time-delay", shapes + (rate > 0.0), probe, resampled=degree, sampling=rate)
         for rate in rates
         for shapes, degree in made
     ]
@@ -55,7 +54,7 @@ def drift(scales: Scales) -> list[Variant]:
 
 
 def gain(scales: Scales) -> list[Variant]:
-    """Return a gain throughout, in a range, one way, from a test on, filtered, droopy, by load."""
+    """Return a gain throughout or of a range, a side, later tests, a filter, a droop, a load."""
     peaks = np.array(scales.peaks)
     between = np.sqrt(peaks[1:] * peaks[:-1])[peaks[1:] > 1.05 * peaks[:-1]]
     chosen = between[:: max(between.size // 16, 1)]
@@ -73,7 +72,7 @@ def gain(scales: Scales) -> list[Variant]:
     ]
     filtered = [  # above the band only the product of gain and time constant shows
         one("sensor-gain", int(t > _IN_BAND), 1e-3, side=1.0,
-             filter_time=float(t / scales.omega), digital=digital)
+            filter_time=float(t / scales.omega), digital=digital)
         for t in np.geomspace(0.01, 1.0, 8)
         for digital in ((0.0, 1.0) if t / scales.omega < COARSE * scales.step else (0.0,))
     ]
