@@ -17,7 +17,7 @@ from tests.calibration.gap.table import (
 )
 
 pytestmark = [pytest.mark.sweep, pytest.mark.parametrize("kind", SETS)]
-DEVICE = 10_000  # of the run whose table is kept; clean campaigns and pairs follow it there
+DEVICE = 10_000  # of the run before the kept one; clean campaigns and pairs follow it
 CLEAN, PAIRS = range(DEVICE + 1000, DEVICE + 1020), range(DEVICE + 3000, DEVICE + 3010)
 
 
