@@ -45,6 +45,10 @@ class Motion:
     """Which fractional derivative: "weyl", "caputo", "band-limited", ..."""
     periodic: bool = False
     """True where the samples are whole periods of a steady state."""
+    test: int = 0
+    """Number of the record in its campaign, from 1; 0 where it isn't known."""
+    sampling: float = 0.0
+    """s, sampling interval of the record that it belongs to; 0 where it is its own `step`."""
 
     @property
     def step(self) -> float:

@@ -12,7 +12,8 @@ from pkgutil import iter_modules
 
 from models.checks import InputError, one_of
 from models.terms.own import read_term
-from models.terms.term import ForceOf, Parameter, Shape, Term, TermSource
+from models.terms.scales import Scales
+from models.terms.term import ForceOf, Parameter, Shape, Start, Term, TermSource
 
 TERMS: dict[str, Term] = {
     term.id: term
@@ -115,7 +116,9 @@ __all__ = [
     "TERMS",
     "ForceOf",
     "Parameter",
+    "Scales",
     "Shape",
+    "Start",
     "Term",
     "TermSource",
     "find_term",

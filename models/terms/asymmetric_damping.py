@@ -4,7 +4,8 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import Parameter, Shape, Start, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
@@ -19,14 +20,23 @@ def column(motion: Motion, shape: Shape) -> Array:
     return np.asarray(side * np.maximum(side * motion.velocity, 0.0) ** power)
 
 
+def starts(scales: Scales) -> list[Start]:
+    """Return a loss that differs by direction; of one way only, at several powers of speed."""
+    one_way = [
+        Start.one(power=power, side=side) for power in (0.5, 1.5, 2.0, 3.0) for side in (1.0, -1.0)
+    ]
+    return [Start.one(power=1.0, side=0.0), *one_way]
+
+
 TERM = Term(
     "asymmetric-damping",
     "N s^{power}/m^{power}",
     "c times |v|: damping c_v + c in extension, c_v - c in compression; or a power of v one way",
     column,
     parameters=(
-        Parameter("power", 0.25, 4.0, 1.0, ""),
-        Parameter("side", -1.0, 1.0, 0.0, ""),
+        Parameter("power", 0.25, 4.0, 1.0, "", fitted=False),
+        Parameter("side", -1.0, 1.0, 0.0, "", fitted=False),
     ),
     mistaken_for=("force-offset", "cavitation"),
+    starts=starts,
 )

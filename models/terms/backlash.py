@@ -1,12 +1,15 @@
 """Backlash: play in a joint, in which the device coasts until the other flank is met."""
 
+from itertools import product
+
 import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
 from models.terms.joint import Joint, through_joint
 from models.terms.joint_device import device_of
-from models.terms.term import ForceOf, Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import ForceOf, Parameter, Shape, Start, Term
 
 
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
@@ -26,6 +29,20 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     return np.asarray(force + coefficient * (through_joint(force, motion, joint, device) - force))
 
 
+def starts(scales: Scales) -> list[Start]:
+    """Return gaps with hard or soft flanks."""
+    flanks = (
+        *product((4.0, 12.0, 30.0), (0.15, 0.5), (0.0,)), (12.0, 0.5, 0.1), (40.0, 0.5, 0.1)
+    )
+    return [
+        Start.one(
+            gap=float(g * scales.displacement), contact=k * scales.omega, loss=loss, softness=soft
+        )
+        for g in np.geomspace(1e-4, 0.3, 11)
+        for k, loss, soft in flanks
+    ]
+
+
 TERM = Term(
     "backlash",
     "1",
@@ -36,9 +53,12 @@ TERM = Term(
         Parameter("gap", 0.001, 1.0, 0.05, "m", "displacement", "log"),
         Parameter("contact", 10.0, 1e4, 600.0, "rad/s", "", "log"),
         Parameter("loss", 0.0, 1.0, 0.2, ""),
-        Parameter("inside", 0.0, 1.0, 0.0, ""),
+        Parameter("inside", 0.0, 1.0, 0.0, "", fitted=False),
         Parameter("softness", 0.0, 1.0, 0.0, ""),
     ),
     nonnegative=True,
     mistaken_for=("hysteresis", "coulomb-friction", "series-compliance"),
+    bounds=lambda shape: (0.0, 1.0),
+    impacts=lambda shape: True,
+    starts=starts,
 )

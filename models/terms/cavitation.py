@@ -6,8 +6,9 @@ from models.checks import Array
 from models.motion import Motion
 from models.terms.joint import Joint, through_joint
 from models.terms.joint_device import device_of
+from models.terms.scales import Scales
 from models.terms.sensor_clipping import excess
-from models.terms.term import ForceOf, Parameter, Shape, Term
+from models.terms.term import ForceOf, Parameter, Shape, Start, Term
 
 
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
@@ -43,6 +44,21 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     return np.asarray(force + coefficient * (through_joint(force, motion, joint, device) - force))
 
 
+def starts(scales: Scales) -> list[Start]:
+    """Return limits at which oil tears, either way, made up through a valve or not."""
+    return [
+        Start.one(
+            limit=float(c * scales.force), contact=k * scales.omega, loss=0.3, refill=refill,
+            lag=lag / scales.omega, side=side,
+        )
+        for c in np.linspace(0.1, 0.96, 12)
+        for k, refill, lag in (
+            (6.0, 0.0, 0.0), (25.0, 0.0, 0.0), (25.0, 1.0, 0.0), (25.0, 1.0, 0.1),
+        )
+        for side in (1.0, -1.0)
+    ]
+
+
 TERM = Term(
     "cavitation",
     "1",
@@ -54,11 +70,14 @@ TERM = Term(
         Parameter("softness", 0.0, 0.5, 0.0, "N"),
         Parameter("contact", 0.0, 1e4, 0.0, "rad/s"),
         Parameter("loss", 0.0, 1.0, 0.2, ""),
-        Parameter("refill", 0.0, 1.0, 0.0, ""),
+        Parameter("refill", 0.0, 1.0, 0.0, "", fitted=False),
         Parameter("lag", 0.0, 0.1, 0.0, "s"),
         Parameter("valve", 0.0, 1e7, 0.0, "N s/m", "", "log"),
-        Parameter("side", -1.0, 1.0, -1.0, ""),
+        Parameter("side", -1.0, 1.0, -1.0, "", fitted=False),
     ),
     nonnegative=True,
     mistaken_for=("asymmetric-damping", "sensor-clipping"),
+    bounds=lambda shape: (0.0, 1.0),
+    impacts=lambda shape: shape["contact"] > 0.0,
+    starts=starts,
 )

@@ -5,7 +5,8 @@ import numpy as np
 from models.checks import Array
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state
-from models.terms.term import Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import Parameter, Shape, Start, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
@@ -17,11 +18,14 @@ def column(motion: Motion, shape: Shape) -> Array:
     Where `other_share` is not 0, that share of the friction reverses over `other_speed` (m/s)
     instead, 0 for a jump, along the plain curve: seals differ, and a limit may be approached in
     two stages.
+    With a `relative_speed` the transition speed is that share of the motion's greatest speed.
     With a `presliding` length (m) it is the state of bristles that deflect before they slip.
     """
     if shape.get("presliding", 0.0) > 0.0:
         return bristle_state(motion, shape["presliding"])
     transition = shape.get("transition_speed", 0.0)
+    if shape.get("relative_speed", 0.0) > 0.0:
+        transition = shape["relative_speed"] * float(np.abs(motion.velocity).max())
     if transition == 0.0:
         return np.sign(motion.velocity)
     form, share = shape.get("form", 0.0), shape.get("other_share", 0.0)
@@ -48,6 +52,30 @@ def _reversing(speed: Array, form: float, sharpness: float) -> Array:
     return np.sign(speed) * less * knee
 
 
+def starts(scales: Scales) -> list[Start]:
+    """Return a jump, a reversal over a speed, a deflection before sliding."""
+    speeds = [0.0, *np.geomspace(0.002, 0.25, 7) * scales.speed]
+    lengths = np.geomspace(1e-4, 0.02, 6) * scales.displacement
+    reversing = [Start.one(transition_speed=float(s)) for s in speeds]
+    return reversing + [Start.one(presliding=float(z)) for z in lengths]
+
+
+def curves(scales: Scales) -> list[Shape]:
+    """Return a jump, reversals over speeds and displacements, and at shares of a record's speed."""
+    speeds = _doubling(0.03 * scales.least_speed, 0.05 * scales.speed)
+    lengths = _doubling(0.002 * scales.least_displacement, 0.1 * scales.displacement)
+    return [
+        {},
+        *({"transition_speed": s} for s in speeds),
+        *({"presliding": z} for z in lengths),
+        *({"relative_speed": r} for r in _doubling(0.003, 0.1)),
+    ]
+
+
+def _doubling(low: float, high: float) -> list[float]:
+    return [float(v) for v in np.exp(np.arange(np.log(low), np.log(high), np.log(2.0)))]
+
+
 TERM = Term(
     "coulomb-friction",
     "N",
@@ -56,11 +84,16 @@ TERM = Term(
     parameters=(
         Parameter("transition_speed", 1e-4, 0.3, 0.0, "m/s", "speed", "log"),
         Parameter("presliding", 1e-5, 0.02, 0.0, "m", "displacement", "log"),
-        Parameter("form", 0.0, 1.0, 0.0, ""),
+        Parameter("relative_speed", 1e-3, 0.3, 0.0, "", "", "log"),
+        Parameter("form", 0.0, 1.0, 0.0, "", fitted=False),
         Parameter("sharpness", 0.5, 20.0, 0.0, "", "", "log"),
         Parameter("other_speed", 1e-4, 0.03, 0.0, "m/s", "speed", "log"),
         Parameter("other_share", 0.02, 0.98, 0.0, ""),
     ),
     nonnegative=True,
     mistaken_for=("stribeck-friction", "power-law-damping", "hysteresis"),
+    follows=lambda shape: "path" if shape["presliding"] > 0.0 else "motion",
+    starts=starts,
+    curves=curves,
+    departure=0.3,
 )

@@ -4,7 +4,8 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import Parameter, Shape, Start, Term
 
 _MOST_CLOSED = 0.98
 
@@ -22,6 +23,14 @@ def column(motion: Motion, shape: Shape) -> Array:
     return np.asarray(x**3 / (left if span == 0.0 else left + (x / span) ** 2))
 
 
+def starts(scales: Scales) -> list[Start]:
+    """Return a cube, a spring that closes up, one that levels off."""
+    size = scales.displacement
+    closing = [Start.one(closure=c * size) for c in (1.05, 1.2, 1.5, 2.5)]
+    levelling = [Start.one(span=s * size) for s in (0.2, 0.5, 1.0, 2.5)]
+    return [Start.one(), *closing, *levelling]
+
+
 TERM = Term(
     "cubic-stiffness",
     "N/m^3",
@@ -32,4 +41,5 @@ TERM = Term(
         Parameter("span", 0.1, 10.0, 0.0, "m", "displacement", "log"),
     ),
     mistaken_for=("end-stop", "stiffness"),
+    starts=starts,
 )

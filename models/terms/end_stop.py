@@ -4,7 +4,8 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import Parameter, Shape, Start, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
@@ -37,6 +38,40 @@ def _push(depth: Array, approach: Array, shape: Shape) -> Array:
     return np.asarray(push * np.maximum(1.0 + faster, 0.0))
 
 
+_GAPS = (0.3, 0.45, 0.55, 0.65, 0.72, 0.78, 0.84, 0.89, 0.93, 0.96)
+
+
+def starts(scales: Scales) -> list[Start]:
+    """Return stops on both sides or one, elastic, dissipating, or at two gaps."""
+    gaps = [g * scales.displacement for g in _GAPS]
+    springs = [
+        Start.one(gap=gap, exponent=p, side=side)
+        for gap in gaps
+        for p in (1.0, 1.5, 2.0, 3.0)
+        for side in (0.0, 1.0, -1.0)
+    ]
+    lossy: list[dict[str, float]] = [
+        {"loss": loss / scales.speed, "form": form, "exponent": p}
+        for p in (1.0, 2.0)
+        for loss, form in ((0.5, 0.0), (3.0, 0.0), (1.0, 1.0), (10.0, 1.0))
+    ]
+    times = (0.03, 0.1, 0.3)  # of the time in which the stroke is passed
+    damped = [{"damping_time": t * scales.displacement / scales.speed} for t in times]
+    dissipating = [
+        Start.one(gap=gap, side=side, **{"exponent": 1.0, **more})
+        for side, some in ((0.0, gaps), (1.0, gaps[::2]), (-1.0, gaps[::2]))
+        for gap in some
+        for more in (*lossy, *damped, {"dry_loss": 0.3})
+    ]
+    uneven = [
+        Start(({"gap": up, "side": 1.0}, {"gap": down, "side": -1.0}))
+        for up in gaps[::2]
+        for down in gaps[::2]
+        if up != down
+    ]
+    return springs + dissipating + uneven
+
+
 TERM = Term(
     "end-stop",
     "N/m^{exponent}",
@@ -45,12 +80,13 @@ TERM = Term(
     parameters=(
         Parameter("gap", 0.1, 0.99, 0.8, "m", "displacement"),
         Parameter("exponent", 1.0, 3.0, 1.0, ""),
-        Parameter("side", -1.0, 1.0, 0.0, ""),
+        Parameter("side", -1.0, 1.0, 0.0, "", fitted=False),
         Parameter("loss", 1e-4, 1e5, 0.0, "s/m", "", "log"),
         Parameter("damping_time", 1e-6, 1e3, 0.0, "s", "", "log"),
         Parameter("dry_loss", 0.01, 1.0, 0.0, ""),
-        Parameter("form", 0.0, 1.0, 0.0, ""),
+        Parameter("form", 0.0, 1.0, 0.0, "", fitted=False),
     ),
     nonnegative=True,
     mistaken_for=("cubic-stiffness", "stiffness"),
+    starts=starts,
 )

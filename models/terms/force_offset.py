@@ -4,12 +4,20 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Shape, Term
+from models.terms.between_tests import ONLY, numbered, share
+from models.terms.scales import Scales
+from models.terms.term import Shape, Start, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
-    """Return ones."""
-    return np.ones_like(motion.displacement)
+    """Return ones, in all tests or in one only."""
+    return np.full_like(motion.displacement, share(motion, shape))
+
+
+def starts(scales: Scales) -> list[Start]:
+    """Return one offset in all tests, and one of its own in each."""
+    own = tuple({"only": n} for n in numbered(scales))
+    return [Start.one(), *([Start(own)] if own else [])]
 
 
 TERM = Term(
@@ -18,4 +26,6 @@ TERM = Term(
     "a constant force",
     column,
     mistaken_for=("sensor-drift", "asymmetric-damping"),
+    parameters=(ONLY,),
+    starts=starts,
 )

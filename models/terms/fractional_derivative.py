@@ -2,12 +2,18 @@
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import Parameter, Shape, Start, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
     """Return D^order x, m/s^order, by the operator of the motion."""
     return motion.fractional(shape["order"])
+
+
+def starts(scales: Scales) -> list[Start]:
+    """Return orders between the whole ones."""
+    return [Start.one(order=0.1 * k) for k in range(1, 20) if k != 10]
 
 
 TERM = Term(
@@ -19,4 +25,5 @@ TERM = Term(
     nonnegative=True,
     mistaken_for=("inertia", "viscous-damping", "stiffness"),
     harmonic=True,
+    starts=starts,
 )

@@ -5,7 +5,8 @@ from numba import njit
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import Parameter, Shape, Start, Term
 
 JENKINS, DAHL, IWAN = 0.0, 1.0, 2.0
 _SLIDERS = 8
@@ -70,6 +71,15 @@ def column(motion: Motion, shape: Shape) -> Array:
     return np.asarray(_stop(x, limit, passes=passes))
 
 
+def starts(scales: Scales) -> list[Start]:
+    """Return yield displacements, in each form."""
+    return [
+        Start.one(yield_displacement=float(r), form=form)
+        for r in np.geomspace(0.02, 1.5, 10) * scales.displacement
+        for form in (JENKINS, DAHL, IWAN)
+    ]
+
+
 TERM = Term(
     "hysteresis",
     "N",
@@ -77,9 +87,10 @@ TERM = Term(
     column,
     parameters=(
         Parameter("yield_displacement", 0.003, 1.5, 0.1, "m", "displacement", "log"),
-        Parameter("form", 0.0, 2.0, 0.0, ""),
+        Parameter("form", 0.0, 2.0, 0.0, "", fitted=False),
     ),
     nonnegative=True,
     mistaken_for=("coulomb-friction", "stiffness", "stribeck-friction"),
     follows="path",
+    starts=starts,
 )

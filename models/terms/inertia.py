@@ -18,4 +18,5 @@ TERM = Term(
     nonnegative=True,
     mistaken_for=("fractional-derivative", "stiffness", "series-compliance"),
     harmonic=True,
+    derivative=2.0,
 )

@@ -4,7 +4,8 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import Parameter, Shape, Start, Term
 
 _STEP, _WAVE = 2.0, 3.0
 
@@ -31,17 +32,44 @@ def column(motion: Motion, shape: Shape) -> Array:
     return np.asarray(along * local)
 
 
+def starts(scales: Scales) -> list[Start]:
+    """Return friction by powers of displacement, in a place, or periodic along the rod."""
+    speed, size = scales.reversal, scales.displacement
+    first, second, fourth = (
+        {"power": p, "transition_speed": speed} for p in (1.0, 2.0, 4.0)
+    )
+    sets = ((first,), (second,), (first, second), (second, fourth), (first, second, fourth))
+    local = [
+        Start.one(
+            power=0.0, form=form, place=place * size, width=width * size, transition_speed=speed
+        )
+        for form in (0.0, _STEP)
+        for place in (-0.5, 0.05, 0.5)
+        for width in (0.15, 0.4)
+    ]
+    periodic = [
+        Start.one(
+            power=0.0, form=_WAVE, place=phase * width, width=width, transition_speed=speed
+        )
+        for width in size / np.arange(0.7, 4.0, 0.15)
+        for phase in (1.0 / 12.0, 0.25, 5.0 / 12.0)  # the sign gives the others
+    ]
+    return [*(Start(parts) for parts in sets), *local, *periodic]
+
+
 TERM = Term(
     "position-dependent-friction",
     "N/m^{power}",
     "f times sign v times x, its square, or what is near a place",
     column,
     parameters=(
-        Parameter("power", 0.0, 4.0, 1.0, ""),
-        Parameter("form", 0.0, 3.0, 0.0, ""),
+        Parameter("power", 0.0, 4.0, 1.0, "", fitted=False),
+        Parameter("form", 0.0, 3.0, 0.0, "", fitted=False),
         Parameter("place", -1.0, 1.0, 0.0, "m", "displacement"),
         Parameter("width", 0.05, 1.0, 0.0, "m", "displacement", "log"),
         Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
     ),
     mistaken_for=("hysteresis", "coulomb-friction"),
+    needs=("coulomb-friction",),
+    starts=starts,
 )

@@ -4,7 +4,8 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import ForceOf, Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import ForceOf, Parameter, Shape, Start, Term
 
 
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
@@ -31,6 +32,29 @@ def excess(force: Array, shape: Shape) -> Array:
     return np.asarray(upper - lower)
 
 
+def starts(scales: Scales) -> list[Start]:
+    """Return rails on both sides or one, hard or soft, or at two limits."""
+    shares = (0.3, 0.4, 0.5, 0.6, 0.7, 0.78, 0.85, 0.9, 0.95, 0.98)
+
+    def rail(limit: float, soft: float, side: float) -> Shape:
+        force = limit * scales.force
+        return {"limit": force, "softness": soft * force, "side": side}
+
+    even = [
+        Start((rail(c, soft, side),))
+        for c in shares
+        for soft in (0.0, 0.05, 0.15)
+        for side in (0.0, 1.0, -1.0)
+    ]
+    uneven = [
+        Start((rail(up, 0.0, 1.0), rail(down, 0.0, -1.0)))
+        for up in shares
+        for down in shares
+        if up != down
+    ]
+    return even + uneven
+
+
 TERM = Term(
     "sensor-clipping",
     "1",
@@ -40,8 +64,10 @@ TERM = Term(
     parameters=(
         Parameter("limit", 0.2, 1.0, 0.9, "N", "force"),
         Parameter("softness", 0.0, 0.5, 0.0, "N"),
-        Parameter("side", -1.0, 1.0, 0.0, ""),
+        Parameter("side", -1.0, 1.0, 0.0, "", fitted=False),
     ),
     nonnegative=True,
     mistaken_for=("cavitation",),
+    bounds=lambda shape: (0.0, 1.0),
+    starts=starts,
 )

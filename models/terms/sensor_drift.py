@@ -4,23 +4,42 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.term import Parameter, Shape, Term
+from models.terms.between_tests import FROM_TEST, ONLY, OVER, growing, numbered, share
+from models.terms.scales import Scales
+from models.terms.term import Parameter, Shape, Start, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
     """Return 1 - exp(-t/T), or t to a whole `power` where `settling_time` is 0, t in s.
 
     Several powers together make a zero that wanders. With `over` above 0 it moves over that many
-    of a campaign's tests from `from_test` on and hardly within one: 1, and who knows the test
-    scales it. With `only` it is there in that test and no other.
+    of a campaign's tests from `from_test` on and hardly within one: the share of it in the
+    motion's test. With `only` it is there in that test and no other.
     """
+    there = share(motion, shape)
     if shape["over"] > 0.0:
-        return np.ones_like(motion.time)
+        return np.full_like(motion.time, there)
     elapsed = motion.time - motion.time[0]
     constant = shape["settling_time"]
     if constant == 0.0:
-        return np.asarray(elapsed ** int(shape["power"]))
-    return np.asarray(-np.expm1(-elapsed / constant))
+        return np.asarray(there * elapsed ** int(shape["power"]))
+    return np.asarray(-there * np.expm1(-elapsed / constant))
+
+
+def starts(scales: Scales) -> list[Start]:
+    """Return a zero that settles, wanders, moves from test to test, or wanders in each its way."""
+    settling = [
+        Start.one(settling_time=float(t))
+        for t in (0.0, *np.geomspace(0.02, 1.0, 5) * scales.duration)
+    ]
+    powers: list[Shape] = [{"power": p} for p in (1.0, 2.0, 3.0)]
+    wandering = [Start(tuple(powers[:n])) for n in (2, 3)]
+    numbers = numbered(scales)
+    zeros: list[Shape] = [{"over": 1.0, "only": n} for n in numbers]
+    slopes: list[Shape] = [{"power": 1.0, "only": n} for n in numbers]
+    bends: list[Shape] = [{"power": 2.0, "only": n} for n in numbers]
+    own = [Start((*zeros, *slopes)), Start((*zeros, *slopes, *bends))] if numbers else []
+    return settling + wandering + growing(scales) + own
 
 
 TERM = Term(
@@ -30,11 +49,12 @@ TERM = Term(
     column,
     parameters=(
         Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),
-        Parameter("power", 1.0, 3.0, 1.0, ""),
-        Parameter("from_test", 0.0, 1e6, 0.0, ""),
-        Parameter("over", 0.0, 1e6, 0.0, ""),
-        Parameter("only", 0.0, 1e6, 0.0, ""),
+        Parameter("power", 1.0, 3.0, 1.0, "", fitted=False),
+        FROM_TEST,
+        OVER,
+        ONLY,
     ),
     mistaken_for=("force-offset",),
-    follows="time",
+    follows=lambda shape: "motion" if shape["over"] > 0.0 else "time",
+    starts=starts,
 )

@@ -17,4 +17,5 @@ TERM = Term(
     column,
     mistaken_for=("inertia", "hysteresis", "fractional-derivative"),
     harmonic=True,
+    derivative=0.0,
 )

@@ -5,7 +5,8 @@ import numpy as np
 from models.checks import Array
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state
-from models.terms.term import Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import Parameter, Shape, Start, Term
 
 
 def column(motion: Motion, shape: Shape) -> Array:
@@ -24,6 +25,28 @@ def column(motion: Motion, shape: Shape) -> Array:
     return np.asarray(falls[int(shape["form"])] * direction)
 
 
+def _forms(scales: Scales) -> list[tuple[float, float]]:
+    return [
+        (float(s), form)
+        for s in np.geomspace(0.004, 0.5, 9) * scales.speed
+        for form in (0.0, 1.0, 2.0)
+    ]
+
+
+def starts(scales: Scales) -> list[Start]:
+    """Return speeds over which friction falls, beside a reversal or bristles."""
+    plain = [
+        Start.one(stribeck_velocity=s, form=form, transition_speed=scales.reversal)
+        for s, form in _forms(scales)
+    ]
+    bristles = [
+        Start.one(stribeck_velocity=s, form=form, presliding=float(z))
+        for s, form in _forms(scales)[3::6]
+        for z in np.geomspace(3e-4, 0.05, 5) * scales.displacement
+    ]
+    return plain + bristles
+
+
 TERM = Term(
     "stribeck-friction",
     "N",
@@ -31,10 +54,13 @@ TERM = Term(
     column,
     parameters=(
         Parameter("stribeck_velocity", 0.01, 0.5, 0.1, "m/s", "speed", "log"),
-        Parameter("form", 0.0, 2.0, 0.0, ""),
+        Parameter("form", 0.0, 2.0, 0.0, "", fitted=False),
         Parameter("transition_speed", 0.001, 0.3, 0.0, "m/s", "speed", "log"),
         Parameter("presliding", 1e-5, 0.05, 0.0, "m", "displacement", "log"),
     ),
     nonnegative=True,
     mistaken_for=("coulomb-friction", "hysteresis"),
+    follows=lambda shape: "path" if shape["presliding"] > 0.0 else "motion",
+    needs=("coulomb-friction",),
+    starts=starts,
 )

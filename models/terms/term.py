@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from models.checks import Array, InputError, number
 from models.motion import Motion
+from models.terms.scales import Scales
 
 Shape = Mapping[str, float]
 ForceOf = Callable[[Motion], Array]
@@ -59,6 +61,23 @@ class Parameter:
     """The campaign's amplitude that the bounds are fractions of; "" where they are absolute."""
     spacing: Literal["linear", "log"] = "linear"
     """How trial values are spread."""
+    fitted: bool = True
+    """False for a choice (a side, a form, a test's number): no fit changes it."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A shape that is tried first: one term, or several of the same id fitted together."""
+
+    shapes: tuple[Shape, ...]
+    """Of each, SI; parameters left out have their defaults."""
+    probe: float = 1.0
+    """Coefficient at which a change of input or output is tried."""
+
+    @classmethod
+    def one(cls, probe: float = 1.0, **shape: float) -> Start:
+        """Return a single term's shape."""
+        return cls((shape,), probe)
 
 
 @dataclass(frozen=True)
@@ -104,13 +123,41 @@ class Term:
     """Ids that data of little variety can't tell it from."""
     harmonic: bool = False
     """True where the column is linear in the displacement."""
-    follows: Follows = "motion"
+    follows: Follows | Callable[[Shape], Follows] = "motion"
     """What a column is a function of: the motion at the moment; its path, so that a sine test
     shows the cycle that it settles into; or besides the time since the record began."""
+    derivative: float | None = None
+    """Order of the derivative of displacement that the column is; None for another column."""
+    bounds: Callable[[Shape], tuple[float, float]] | None = None
+    """What the coefficient lies between, by shape; None where only `nonnegative` bounds it."""
+    needs: tuple[str, ...] = ()
+    """Ids of terms without one of which it means nothing."""
+    impacts: Callable[[Shape], bool] | None = None
+    """Tells whether a shape has impacts, which a fit can't find from far; None: none has."""
+    starts: Callable[[Scales], Sequence[Start]] | None = None
+    """Shapes that are tried first in a campaign; None to spread the parameters."""
+    curves: Callable[[Scales], Sequence[Shape]] | None = None
+    """Shapes by whose columns measured ones differ from the formula's, the plainest first."""
+    departure: float = 0.0
+    """Size of these differences over the coefficient, one standard deviation."""
     trials: tuple[Shape, ...] = ()
     """Shapes that are tried first, in units of `scaled_by`; empty to spread the parameters."""
     source: TermSource | None = None
     """File of a user's own term; None for those of the catalogue."""
+
+    def remembers(self, shape: Shape) -> Follows:
+        """Return what the column of a shape is a function of: see `follows`."""
+        return self.follows(shape) if callable(self.follows) else self.follows
+
+    def coefficient_bounds(self, shape: Shape) -> tuple[float, float]:
+        """Return what the coefficient lies between."""
+        if self.bounds is not None:
+            return self.bounds(shape)
+        return (0.0 if self.nonnegative else -math.inf), math.inf
+
+    def has_impacts(self, shape: Shape) -> bool:
+        """Tell whether a shape has impacts."""
+        return self.impacts is not None and self.impacts(shape)
 
     def shape(self, given: Shape) -> dict[str, float]:
         """Return the parameters' values: those given, else the defaults that are absolute.

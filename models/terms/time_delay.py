@@ -7,8 +7,10 @@ from scipy.interpolate import make_interp_spline
 
 from models.checks import Array
 from models.motion import Motion
+from models.terms.between_tests import ONLY, numbered, share
 from models.terms.low_pass import low_passed
-from models.terms.term import ForceOf, Parameter, Shape, Term
+from models.terms.scales import Scales
+from models.terms.term import ForceOf, Parameter, Shape, Start, Term
 
 Late = Callable[[float], Array]
 
@@ -18,13 +20,15 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
 
     With `sampling` (Hz) the delay is a number of samples, as of a converter that takes channels in
     turn: `coefficient` at that rate, more at a lower one.
-    With `only` it is that of one test of a campaign; who knows the test leaves it out of others.
+    With `only` it is that of one test of a campaign.
     `resampled` 0 is a channel that samples later; 1 or 3 one whose samples were aligned by lines
     or a cubic spline between them, which rounds a jump of the force, or rings beside it.
     `filter_order` 1 to 4 is a (Butterworth) low-pass in the force channel, that slow forces pass
     with that delay; `digital` 1 one that works on the samples.
     """
-    force, delay = force_of(motion), delay_at(motion.step, coefficient, shape)
+    step = motion.sampling or motion.step
+    force = force_of(motion)
+    delay = share(motion, shape) * delay_at(step, coefficient, shape)
     if shape.get("resampled", 0.0) > 0.0:
         return read_late(force, motion.time, int(shape["resampled"]))(delay)
     if shape.get("filter_order", 0.0) > 0.0 and delay > 0.0:
@@ -53,6 +57,17 @@ def read_late(force: Array, time: Array, degree: int) -> Late:
     return lambda delay: np.asarray(spline(np.clip(time - delay, time[0], time[-1])))
 
 
+def starts(scales: Scales) -> list[Start]:
+    """Return a later sample, a low-pass, a number of samples, one value a test."""
+    probe = 0.02 / scales.omega
+    sampled = [Start.one(probe)]
+    if scales.sampling:
+        sampled.append(Start.one(probe, sampling=scales.sampling))
+    filtered = [Start.one(probe, filter_order=order) for order in (1.0, 2.0, 4.0)]
+    own = tuple({"only": n} for n in numbered(scales))
+    return sampled + filtered + ([Start(own, probe)] if own else [])
+
+
 TERM = Term(
     "time-delay",
     "s",
@@ -60,11 +75,13 @@ TERM = Term(
     transform=transform,
     acts="output",
     parameters=(
-        Parameter("resampled", 0.0, 3.0, 0.0, ""),
-        Parameter("filter_order", 0.0, 4.0, 0.0, ""),
-        Parameter("digital", 0.0, 1.0, 0.0, ""),
-        Parameter("sampling", 0.0, 1e9, 0.0, "Hz"),
-        Parameter("only", 0.0, 1e6, 0.0, ""),
+        Parameter("resampled", 0.0, 3.0, 0.0, "", fitted=False),
+        Parameter("filter_order", 0.0, 4.0, 0.0, "", fitted=False),
+        Parameter("digital", 0.0, 1.0, 0.0, "", fitted=False),
+        Parameter("sampling", 0.0, 1e9, 0.0, "Hz", fitted=False),
+        ONLY,
     ),
     mistaken_for=("viscous-damping", "fractional-derivative", "series-compliance"),
+    bounds=lambda shape: (0.0 if shape["filter_order"] > 0.0 else -np.inf, np.inf),
+    starts=starts,
 )

@@ -18,4 +18,5 @@ TERM = Term(
     nonnegative=True,
     mistaken_for=("fractional-derivative", "power-law-damping", "time-delay"),
     harmonic=True,
+    derivative=1.0,
 )

@@ -1,0 +1,1 @@
+"""Bands along a coordinate: how many, where they end, and what holds in each."""

@@ -1,0 +1,213 @@
+"""What a device has beyond its structure, found beside the bands and not after them.
+
+A spring or a friction that depends on place, left out, would turn into a boundary. So terms of the
+catalogue join the model with one band as well as that with several, bands are searched for anew
+with what has joined, and evidence decides between the ways.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from discover.bands.composite import composite_of
+from discover.bands.search import Banded, BandSearch, searched
+from discover.bands.variants import Grids, variants_of
+from discover.posterior.assess import Assessed, Assessor
+from discover.posterior.climb import Place
+from discover.posterior.columns import Behind
+from discover.posterior.grow import Step, grown
+from discover.posterior.model import Evaluator
+from discover.posterior.setup import space_of
+from discover.posterior.space import Part, Space, departures, parts_of
+from discover.posterior.structures import Variant
+from discover.rows import RecordRows, force_rows
+from models.checks import Array
+from models.constitutive import FittedTerm, ForceModel
+from models.cores import Core
+from models.terms import Term
+
+MOST = 4
+"""Terms that may join."""
+
+
+@dataclass(frozen=True)
+class Joined:
+    """A term that has joined."""
+
+    terms: tuple[FittedTerm, ...]
+    """One, or several of the same id."""
+    log_prior: float
+    """Nats."""
+    step: Step
+    """What else might have joined in its place."""
+
+    @property
+    def id(self) -> str:
+        """Id of its terms."""
+        return self.terms[0].id
+
+
+@dataclass(frozen=True)
+class Found:
+    """Bands, what holds in each, and what the device has besides."""
+
+    banded: Banded
+    """The most probable division."""
+    fewer: tuple[Banded, ...]
+    """All that were weighed beside it with the same terms joined, by number of bands."""
+    search: BandSearch
+    """That found it."""
+    joined: tuple[Joined, ...]
+    """What the device has besides its structure."""
+    last: Step | None
+    """What might have joined and did not; None where nothing but noise was left."""
+
+    @property
+    def value(self) -> float:
+        """Log evidence with priors, nats."""
+        return self.banded.value + sum(j.log_prior for j in self.joined)
+
+    @property
+    def variants(self) -> tuple[Variant, ...]:
+        """That a band may have."""
+        return self.search.variants
+
+
+@dataclass(frozen=True)
+class Device:
+    """What a search for bands and for what a device has besides starts from."""
+
+    rows: tuple[RecordRows, ...]
+    """Of the records that are fitted."""
+    friction: Term
+    """That every structure may have."""
+    with_friction: bool
+    """Whether models hold it."""
+    cores: tuple[Core, ...]
+    """Structures that a band may have."""
+    grids: Grids
+    """Bounds of their shapes, where given."""
+    extras: tuple[str, ...]
+    """Ids of what may join."""
+    coordinates: tuple[str, ...]
+    """Along which bands may lie: "speed", "frequency"."""
+    bands: int | None
+    """Number that is asked for; None lets the evidence choose."""
+
+
+def found(device: Device) -> Found:
+    """Return the most probable bands, with what the device has besides."""
+    now = _searched(device, (), Place())
+    if now.banded.quiet:
+        return now
+    best = now
+    starts = {b.bands: b for b in (now.banded, now.fewer[0])}
+    for start in starts.values():
+        way = replace(now, banded=start)
+        for _ in range(MOST):
+            more = _with_one_more(device, way)
+            if isinstance(more, Step):
+                if way is best or (way.joined == best.joined):
+                    best = replace(best, last=more)
+                break
+            if more.value > best.value:
+                best = more
+            way = more
+            if more.banded.quiet:
+                break
+        if best.banded.quiet:
+            break
+    return best
+
+
+def _searched(device: Device, joined: Sequence[Joined], place: Place,
+              behind: Assessed | None = None) -> Found:
+    """Return the bands with what has joined."""
+    space, curve, parts = _space(device, joined, behind)
+    variants = variants_of(space, device.cores, device.grids)
+    units = space.sheet.units
+    values = {
+        "speed": np.array([u.speed for u in units]),
+        "frequency": np.array([u.frequency for u in units]),
+    }
+    search = BandSearch(
+        space, variants, curve if device.with_friction else None, tuple(parts),
+        {name: values[name] for name in device.coordinates},
+    )
+    bands = searched(search, place, bands=device.bands)
+    chosen = bands[-1] if device.bands is not None else max(bands, key=lambda b: b.value)
+    return Found(chosen, tuple(bands), search, tuple(joined), None)
+
+
+def _space(
+    device: Device, joined: Sequence[Joined], behind: Assessed | None
+) -> tuple[Space, Part, list[Part]]:
+    """Return the space of models beside what has joined, friction, and the parts of the latter."""
+    terms = [t for j in joined for t in j.terms]
+    if behind is None or all(t.term.acts == "force" for t in terms):
+        space, curve = space_of(device.rows, device.friction)
+        return space, curve, parts_of(space, [j.terms for j in joined])
+    models = _by_record(behind)
+    changed = Behind(models, {r.file: i for i, r in enumerate(device.rows)})
+    targets = _targets(device.rows, changed)
+    space, curve = space_of(
+        device.rows, device.friction, columns_of=changed, targets=targets
+    )
+    return space, curve, parts_of(space, [j.terms for j in joined])
+
+
+def _by_record(behind: Assessed) -> dict[int, ForceModel]:
+    units = behind.local.model
+    return {place: units.in_unit(place) for place in range(behind.local.force.shape[0])}
+
+
+def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
+    """Return what columns times whole coefficients shall make of each record's force."""
+    result = []
+    for r in rows:
+        model = changed.models[changed.places[r.file]]
+        plain = [FittedTerm(t.id, 1.0, t.shape) for t in model.terms]
+        slopes = changed(r, plain)
+        values = np.array([t.coefficient for t in model.terms])
+        result.append(r.target - force_rows(r, model) + values @ slopes)
+    return result
+
+
+def assessor_of(device: Device) -> Assessor:
+    """Return what assesses models of a device's records."""
+    space, curve = space_of(device.rows, device.friction)
+    return Assessor(space, Evaluator(space.sheet, space.scales), departures(curve, path=True))
+
+
+def composite(device: Device, way: Found) -> Assessed:
+    """Return the bands' model with what has joined, fitted."""
+    shared = [t for j in way.joined for t in j.terms]
+    if device.with_friction:
+        shared.append(FittedTerm(device.friction.id, 1.0, {}))
+    model = composite_of(way.banded, way.variants, shared)
+    return assessor_of(device).assess(model, way.banded.place)
+
+
+def _with_one_more(device: Device, way: Found) -> Found | Step:
+    """Return the bands with the term that makes the records most probable, or why there is none."""
+    assessor = assessor_of(device)
+    now = composite(device, way)
+    there = {j.id for j in way.joined}
+    open_ids: Collection[str] = [i for i in device.extras if i not in there]
+    step = grown(assessor, now, open_ids)
+    best = step.best
+    if not best.id or best.assessed is None:
+        return step
+    terms = best.assessed.model.terms[-best.count :]
+    new = Joined(
+        tuple(p.fitted for p in terms), best.value - best.assessed.value, step
+    )
+    fitted = {t.fitted.id: t.fitted for t in best.assessed.model.terms}
+    old = [
+        replace(j, terms=tuple(fitted.get(t.id, t) for t in j.terms)) if len(j.terms) == 1 else j
+        for j in way.joined
+    ]
+    return _searched(device, (*old, new), best.assessed.place, best.assessed)

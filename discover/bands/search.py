@@ -1,0 +1,224 @@
+"""The search for bands: from one band on, divided again as long as that is more probable."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.special import logsumexp
+
+from discover.bands.divisions import FEWEST, refined, sharp
+from discover.bands.variants import as_choice
+from discover.posterior.climb import QUIET, Place, climb
+from discover.posterior.space import Part, Space
+from discover.posterior.structures import (
+    Choice,
+    Divided,
+    Variant,
+    divided,
+    sums_of_many,
+    sums_of_one,
+)
+from models.checks import Array, Indices
+
+MOST_BANDS = 5
+_ROUNDS = 4  # of dividing and climbing
+_LOG_2 = float(np.log(2.0))
+_DOUBT = 3.0  # nats, within which a model that explains all but noise is not ruled out
+
+
+@dataclass(frozen=True)
+class Banded:
+    """A number of bands, where they end and what holds in each."""
+
+    coordinate: str
+    """Along which they lie; "" for one band."""
+    shares: Array
+    """(B, U) how much of each unit is in each band."""
+    brackets: tuple[tuple[float, float], ...]
+    """(B - 1) coordinates of the units beside each boundary."""
+    variants: tuple[int, ...]
+    """(B,) places of the best ones."""
+    by_variant: Array
+    """(B, V) log evidence of each variant of a band beside the others' best, nats."""
+    value: float
+    """Log evidence with priors, nats, summed over sizes and over where the last boundary lies."""
+    place: Place
+    """Sizes of what is not explained, most probable ones."""
+    scale: int
+    """Place of the scale of friction's curve."""
+    quiet: bool
+    """True where all but noise may be explained."""
+
+    @property
+    def bands(self) -> int:
+        """Number of bands."""
+        return self.shares.shape[0]
+
+
+@dataclass
+class BandSearch:
+    """What bands are searched for with."""
+
+    space: Space
+    """Of the records."""
+    variants: tuple[Variant, ...]
+    """That a band may have."""
+    friction: Part | None
+    """Shared by all bands; None where no model has it."""
+    extras: tuple[Part, ...]
+    """What else all bands share."""
+    coordinates: Mapping[str, Array]
+    """(U,) values of each coordinate along which bands may lie."""
+    choice: Choice = field(init=False)
+    columns: Indices = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Set the variants side by side."""
+        self.choice, self.columns = as_choice(self.variants)
+
+    @property
+    def common(self) -> tuple[Part, ...]:
+        """What all bands share."""
+        return (*(() if self.friction is None else (self.friction,)), *self.extras)
+
+    def scales(self) -> Array:
+        """Return the scales (S, P) of what all bands share: friction's curve has several."""
+        own = [p.scales[0] for p in self.extras]
+        if self.friction is None:
+            return np.array([own]).reshape(1, len(own))
+        return np.array([[s, *own] for s in self.friction.scales])
+
+    def one(
+        self, place: Place, shares: Array, start: Indices, choice: Choice | None = None
+    ) -> tuple[float, int, Divided]:
+        """Return a division's log evidence at sizes, the place of the best scale, its answer."""
+        here = self.space.given(place.sizes(self.space.own_unit))
+        sums = sums_of_one(here, self.columns, self.common, self.scales(), shares)
+        chosen = self.choice if choice is None else choice
+        answers = [divided(s, chosen, start[None]) for s in sums]
+        values = np.array([float(a.value[0]) for a in answers])
+        best = int(values.argmax())
+        return float(logsumexp(values)) - float(np.log(values.size)), best, answers[best]
+
+    def many(self, place: Place, scale: int, shares: Array, start: Indices) -> Divided:
+        """Return divisions (D, B, U) at sizes and at one of the scales."""
+        here = self.space.given(place.sizes(self.space.own_unit))
+        sums = sums_of_many(here, self.columns, self.common, self.scales()[scale], shares)
+        return divided(sums, self.choice, start)
+
+    def one_band(self, start: Place) -> Banded:
+        """Return what holds where all units are one band."""
+        whole = np.ones((1, 1, len(self.space.sheet.units)))
+        first = np.zeros((1, 1), dtype=int)
+        return self._banded("", whole, (), first, start, 0.0, [()])
+
+    def divided_again(self, now: Banded) -> Banded | None:
+        """Return the best division with one band more; None where there are too few units."""
+        kinds = [now.coordinate] if now.coordinate else list(self.coordinates)
+        shares, brackets, starts, names = [], [], [], []
+        for name in kinds:
+            parts, ends = sharp(self.coordinates[name])
+            for band in range(now.bands):
+                new = refined(now.shares, band, parts) if now.bands > 1 else parts
+                kept = ends if now.bands == 1 else _kept(ends, now, band, parts)
+                variants = [*now.variants[: band + 1], *now.variants[band:]]
+                shares.append(new)
+                brackets += [
+                    tuple(sorted((*now.brackets, (float(a), float(b))))) for a, b in kept
+                ]
+                starts.append(np.tile(variants, (len(new), 1)))
+                names += [name] * len(new)
+        whole = np.concatenate(shares) if shares else np.zeros((0, 0, 0))
+        if not len(whole):
+            return None
+        prior = now.bands * -_LOG_2 - float(np.log(len(whole)))
+        return self._banded(
+            names, whole, brackets, np.concatenate(starts), now.place, prior, brackets
+        )
+
+    def _banded(
+        self,
+        names: str | Sequence[str],
+        shares: Array,
+        brackets: Sequence[tuple[tuple[float, float], ...]],
+        start: Indices,
+        place: Place,
+        prior: float,
+        ends: Sequence[tuple[tuple[float, float], ...]],
+    ) -> Banded:
+        """Return the best of divisions, its sizes climbed."""
+        best, scale = 0, self.one(place, shares[0], start[0])[1]
+        many = len(shares) > 1
+        alone: dict[Place, tuple[float, int, Divided]] = {}
+        others = 0.0
+        for _ in range(_ROUNDS):
+            begun = start
+            if many:
+                answer = self.many(place, scale, shares, start)
+                best, begun = int(answer.value.argmax()), answer.best
+                others = float(logsumexp(answer.value - answer.value[best]))
+            alone = {}
+            there = climb(lambda p, b=best, s=begun, k=alone: self._seen(p, shares[b], s[b], k),
+                          place)
+            scale = alone[there][1]
+            if there == place:
+                break
+            place, start = there, begun
+        top = max(v for v, _, _ in alone.values())
+        total = float(logsumexp([v for v, _, _ in alone.values()])) + others + prior
+        variants = alone[place][2].best[0]
+        return Banded(
+            coordinate=names if isinstance(names, str) else names[best],
+            shares=shares[best],
+            brackets=ends[best],
+            variants=tuple(int(v) for v in variants),
+            by_variant=alone[place][2].by_variant[0],
+            value=total,
+            place=place,
+            scale=scale,
+            quiet=self._seen(QUIET, shares[best], variants, alone) > top - _DOUBT,
+        )
+
+    def _seen(
+        self, place: Place, shares: Array, start: Indices,
+        known: dict[Place, tuple[float, int, Divided]],
+    ) -> float:
+        if place not in known:
+            known[place] = self.one(place, shares, start)
+        return known[place][0]
+
+
+def _kept(ends: Array, now: Banded, band: int, parts: Array) -> Array:
+    """Return the brackets of the divisions of one band that `refined` keeps."""
+    inside = now.shares[band]
+    kept = [
+        i for i, pair in enumerate(parts)
+        if np.all(np.count_nonzero(pair * inside, axis=1) >= FEWEST)
+    ]
+    return ends[kept]
+
+
+def searched(search: BandSearch, start: Place, *, bands: int | None = None) -> list[Banded]:
+    """Return the best division for every number of bands, as long as one more is more probable.
+
+    Parameters
+    ----------
+    search : BandSearch
+        Of the records.
+    start : Place
+        Sizes to start from.
+    bands : int, optional
+        Number that is asked for; None lets the evidence choose.
+    """
+    found = [search.one_band(start)]
+    most = MOST_BANDS if bands is None else bands
+    while found[-1].bands < most:
+        more = search.divided_again(found[-1])
+        if more is None:
+            break
+        found.append(more)
+        if bands is None and more.value < found[-2].value:
+            break
+    return found

@@ -1,0 +1,95 @@
+"""A model assessed: fitted, and its evidence summed over the sizes of what it does not explain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from discover.posterior.climb import QUIET, Place, climb
+from discover.posterior.local import Judged, Local, fitted, judged
+from discover.posterior.model import Composite, Evaluator
+from discover.posterior.space import Part, Space
+
+_ROUNDS = 3  # of fitting and climbing
+_DOUBT = 3.0
+"""Nats, within which a model that explains all but noise is not ruled out."""
+
+
+@dataclass(frozen=True)
+class Assessed:
+    """A model with its evidence."""
+
+    local: Local
+    """Fitted."""
+    place: Place
+    """Sizes of what it does not explain, most probable ones."""
+    value: float
+    """Log evidence, nats, summed over the sizes."""
+    judged: Judged
+    """At that place."""
+    visited: dict[Place, float]
+    """Log evidence at every place that was looked at."""
+    quiet: bool
+    """True where all but noise may be explained."""
+
+    @property
+    def model(self) -> Composite:
+        """The model at its best values."""
+        return self.local.model
+
+
+@dataclass(frozen=True)
+class Assessor:
+    """What models are assessed with."""
+
+    space: Space
+    """Of the records."""
+    evaluator: Evaluator
+    """Of models."""
+    curve: Part | None
+    """Departures of friction's curve; None where models hold no friction."""
+
+    def assess(
+        self, model: Composite, start: Place, *, refit: bool = True, iterations: int = 12
+    ) -> Assessed:
+        """Return a model fitted and assessed, from sizes to start from."""
+        place = start
+        local = Local(model, (), *[np.zeros(0)] * 4)
+        visited: dict[Place, float] = {}
+        for turn in range(_ROUNDS):
+            sizes = place.sizes(self.space.own_unit)
+            numbers = None if refit else ()
+            local = fitted(
+                self.space, self.evaluator, model, sizes, self.curve_of(model),
+                numbers=numbers, iterations=iterations,
+            )
+            visited = {}
+            found = climb(lambda p: self._at(local, p, visited), place)
+            model = local.model
+            if found == place and turn > 0:
+                break
+            stays, place = found == place, found
+            if stays:
+                break
+        quiet = self._at(local, QUIET, visited) > max(visited.values()) - _DOUBT
+        best = judged(self.space, local, place.sizes(self.space.own_unit), self.curve_of(model))
+        return Assessed(
+            local, place, float(logsumexp(list(visited.values()))), best, visited, quiet
+        )
+
+    def _at(self, local: Local, place: Place, visited: dict[Place, float]) -> float:
+        if place not in visited:
+            sizes = place.sizes(self.space.own_unit)
+            visited[place] = judged(
+                self.space, local, sizes, self.curve_of(local.model)
+            ).value
+        return visited[place]
+
+    def curve_of(self, model: Composite) -> Part | None:
+        """Return the departures of friction's curve where a model has that friction."""
+        if self.curve is None or not self.curve.terms:
+            return None
+        name = self.curve.id
+        return self.curve if any(t.fitted.id == name for t in model.terms) else None

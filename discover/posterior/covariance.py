@@ -1,0 +1,212 @@
+"""What all models share, given its sizes: noise, a remainder, friction that differs by record.
+
+For every unit the covariance of the rows is white noise, and beside it
+
+- an independent error of `loud` times the record's force, on all rows but the fundamental's;
+- a remainder of `remainder` times the record's force: generic functions of the motion whose
+  coefficients vary smoothly with frequency and amplitude, and a tenth of it from unit to unit;
+- friction of `friction` N that a unit has of its own.
+
+Given these sizes all that is asked of columns are products under the inverse covariance; they come
+from plain products of each unit by Woodbury's identity, so that rows are read once for each `loud`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from discover.posterior.sheet import Sheet
+from models.checks import Array, Indices
+
+_INDEPENDENT = 0.1
+"""Share of the remainder's variance that differs from unit to unit."""
+
+Group = tuple[Indices, Array | None]
+"""Columns, and how much of them is there in each unit (U,); None for all."""
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Sizes of what no term explains."""
+
+    remainder: float
+    """Of the record's force."""
+    loud: float
+    """Likewise."""
+    friction: float
+    """N."""
+
+
+@dataclass(frozen=True)
+class Products:
+    """Plain products of columns within each unit, at one size of the independent error."""
+
+    sheet: Sheet
+    """Of the records."""
+    own: Array
+    """(U, N, R) columns of friction that units may have of their own, per N."""
+    columns: Array
+    """(U, K, R) columns, the measured force last."""
+    loud: float
+    """Size of the independent error."""
+
+    @cached_property
+    def scale(self) -> Array:
+        """(U, R) by which rows are divided: the standard deviation of noise and loud error."""
+        return np.asarray(np.sqrt(1.0 + (self.loud * self.sheet.loudness) ** 2))
+
+    @cached_property
+    def base(self) -> Array:
+        """(U, F + N + K, R) remainder, own friction and columns, over `scale`."""
+        whole = np.concatenate([self.sheet.remainder, self.own, self.columns], axis=1)
+        return np.asarray(whole / self.scale[:, None])
+
+    @cached_property
+    def gram(self) -> Array:
+        """(U, F + N + K, F + N + K) products of these."""
+        return np.asarray(self.base @ self.base.transpose(0, 2, 1))
+
+    @cached_property
+    def log_centre(self) -> float:
+        """Log density of noise and loud error at their centre, with what was left out of rows."""
+        value = -0.5 * float(np.sum(np.log1p((self.loud * self.sheet.loudness) ** 2)))
+        count, energy, mean = self.sheet.rest.T
+        grown = 1.0 + self.loud**2 * mean
+        return value - 0.5 * float(np.sum(count * np.log(grown) + energy / grown))
+
+
+@dataclass(frozen=True)
+class Given:
+    """Products of columns under the inverse covariance of given sizes."""
+
+    products: Products
+    """At the same `loud`."""
+    left: Array
+    """(U, F + K, F + K) products within units, what these have of their own taken out."""
+    taken: Array
+    """(U, F + N, F + N + K) what that is."""
+    inner: Array
+    """(U, F + N, F + N) lower factor of one and what units have of their own."""
+    spread: Array
+    """(F + N,) its standard deviations."""
+    smooth: Array
+    """(U, Q) of the remainder that units share."""
+    outer: Array
+    """(Q F, Q F) lower factor of one and what that adds."""
+    log_centre: float
+    """Log density of rows at its centre, without constants, nats."""
+
+    @property
+    def functions(self) -> int:
+        """F, the number of the remainder's functions."""
+        return self.products.sheet.remainder.shape[1]
+
+    @property
+    def force(self) -> int:
+        """Place of the measured force among the columns."""
+        return self.products.columns.shape[1] - 1
+
+    def gram(self, groups: Sequence[Group]) -> Array:
+        """Return products of groups of columns, one after the other."""
+        f = self.functions
+        ends = np.cumsum([0, *(c.size for c, _ in groups)])
+        result = np.empty((ends[-1], ends[-1]))
+        shared = []
+        ones = np.ones(self.left.shape[0])
+        for a, (columns, share) in enumerate(groups):
+            weight = ones if share is None else share
+            here = slice(ends[a], ends[a + 1])
+            for b, (others, other) in enumerate(groups[: a + 1]):
+                both = weight * (ones if other is None else other)
+                block = np.tensordot(both, self.left[:, f + columns[:, None], f + others], (0, 0))
+                there = slice(ends[b], ends[b + 1])
+                result[here, there], result[there, here] = block, block.T
+            weighted = (self.smooth * weight[:, None]).T
+            each = np.tensordot(weighted, self.left[:, :f, f + columns], (1, 0))
+            shared.append(each.reshape(self.outer.shape[0], -1))
+        whole = solve_triangular(
+            self.outer, np.concatenate(shared, axis=1), lower=True, check_finite=False
+        )
+        return result - whole.T @ whole
+
+    def by_unit(self, columns: Indices) -> tuple[Array, Array]:
+        """Return products of columns within units (U, K, K), and the shared part's (U, S, K).
+
+        The products of sums over units are the sums of the first less products of sums of the
+        second.
+        """
+        f = self.functions
+        within = self.left[:, f + columns[:, None], f + columns]
+        each = np.einsum("uq,umk->qmuk", self.smooth, self.left[:, :f, f + columns])
+        shape = self.outer.shape[0], self.left.shape[0], columns.size
+        shared = solve_triangular(
+            self.outer, each.reshape(shape[0], -1), lower=True, check_finite=False
+        )
+        return within, shared.reshape(shape).transpose(1, 0, 2)
+
+    def beside(self, columns: Indices, more: Array) -> tuple[Array, Array]:
+        """Return products of further columns (U, T, R): with columns (K, T), and (T, T)."""
+        p, f, nuisance = self.products, self.functions, self.spread.size
+        new = more / p.scale[:, None]
+        kept = np.r_[np.arange(nuisance), nuisance + columns]
+        plain = p.base[:, kept] @ new.transpose(0, 2, 1)
+        taken = np.linalg.solve(self.inner, self.spread[:, None] * plain[:, :nuisance])
+        seen = np.r_[np.arange(f), nuisance + np.arange(columns.size)]
+        left = plain[:, seen] - self.taken[:, :, kept[seen]].transpose(0, 2, 1) @ taken
+        each = np.tensordot(self.smooth.T, left[:, :f], (1, 0)).reshape(self.outer.shape[0], -1)
+        shared = solve_triangular(self.outer, each, lower=True, check_finite=False)
+        among = np.tensordot(new, new, ((0, 2), (0, 2)))
+        among = among - np.tensordot(taken, taken, ((0, 1), (0, 1))) - shared.T @ shared
+        across = left[:, f:].sum(axis=0)
+        if columns.size:
+            own = np.tensordot(
+                self.smooth.T, self.left[:, :f, f + columns], (1, 0)
+            ).reshape(self.outer.shape[0], -1)
+            own = solve_triangular(self.outer, own, lower=True, check_finite=False)
+            across = across - own.T @ shared
+        return across, among
+
+
+def given(products: Products, sizes: Sizes) -> Given:
+    """Return what products under the inverse covariance of these sizes are made of.
+
+    Parameters
+    ----------
+    products : Products
+        At the same `loud`.
+    sizes : Sizes
+        Of the covariance.
+    """
+    gram, kernel = products.gram, products.sheet.kernel
+    functions, own = products.sheet.remainder.shape[1], products.own.shape[1]
+    nuisance = functions + own
+    spread = np.concatenate(
+        [
+            np.full(functions, np.sqrt(_INDEPENDENT) * sizes.remainder),
+            np.full(own, sizes.friction),
+        ]
+    )
+    inner = np.linalg.cholesky(
+        np.eye(nuisance) + spread[:, None] * gram[:, :nuisance, :nuisance] * spread
+    )
+    taken = np.linalg.solve(inner, spread[:, None] * gram[:, :nuisance])
+    seen = np.r_[np.arange(functions), np.arange(nuisance, gram.shape[1])]
+    some = taken[:, :, seen]
+    left = gram[:, seen[:, None], seen] - some.transpose(0, 2, 1) @ some
+    log_det = 2.0 * float(np.sum(np.log(np.diagonal(inner, axis1=1, axis2=2))))
+    smooth = kernel * (np.sqrt(1.0 - _INDEPENDENT) * sizes.remainder)
+    units, count = smooth.shape[0], smooth.shape[1] * functions
+    pairs = (smooth[:, :, None] * smooth[:, None]).reshape(units, -1)
+    among = left[:, :functions, :functions].reshape(units, -1)
+    square = (pairs.T @ among).reshape(smooth.shape[1], smooth.shape[1], functions, functions)
+    square = square.transpose(0, 2, 1, 3).reshape(count, count)
+    square[np.diag_indices(count)] += 1.0
+    outer = np.linalg.cholesky(square)
+    log_det += 2.0 * float(np.sum(np.log(np.diag(outer))))
+    centre = products.log_centre - 0.5 * log_det
+    return Given(products, left, taken, inner, spread, smooth, outer, centre)

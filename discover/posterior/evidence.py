@@ -1,0 +1,83 @@
+"""Log evidence of linear models whose coefficients are normal beforehand, some of one sign."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import log_ndtr
+
+from models.checks import Array
+
+_LOG_2 = float(np.log(2.0))
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Posterior of models' coefficients."""
+
+    log_evidence: Array
+    """(...,) nats, without the constants that all models share."""
+    mean: Array
+    """(..., K)."""
+    covariance: Array
+    """(..., K, K)."""
+
+
+def solved(gram: Array, side: Array, spread: Array, sign: Array, log_normal: float) -> Solved:
+    """Return the posterior of models of K coefficients.
+
+    Parameters
+    ----------
+    gram : ndarray, shape (..., K, K)
+        Products of their columns under the inverse covariance.
+    side : ndarray, shape (..., K)
+        Products with the measured force.
+    spread : ndarray, shape (..., K)
+        Standard deviation of each coefficient beforehand.
+    sign : ndarray, shape (..., K)
+        1 where a coefficient can't be negative, -1 where not positive, else 0: the prior is
+        a normal one cut off at zero. Its evidence takes each such coefficient by itself.
+    log_normal : float
+        Log density of the measured force without any column.
+    """
+    count = gram.shape[-1]
+    inner = np.eye(count) + spread[..., :, None] * gram * spread[..., None, :]
+    factor = np.linalg.cholesky(inner)
+    inverse = np.linalg.inv(factor)
+    half = np.einsum("...ij,...j->...i", inverse, spread * side)
+    root = inverse * spread[..., None, :]
+    mean = np.einsum("...ji,...j->...i", root, half)
+    covariance = np.swapaxes(root, -1, -2) @ root
+    value = log_normal + 0.5 * np.sum(half**2, axis=-1)
+    value = value - np.sum(np.log(np.diagonal(factor, axis1=-2, axis2=-1)), axis=-1)
+    deviation = np.sqrt(np.maximum(np.diagonal(covariance, axis1=-2, axis2=-1), 1e-300))
+    side_of_zero = np.where(sign == 0.0, 0.0, _LOG_2 + log_ndtr(sign * mean / deviation))
+    return Solved(value + np.sum(side_of_zero, axis=-1), mean, covariance)
+
+
+def without(gram: Array, taken: Array, spread: Array) -> tuple[Array, float]:
+    """Return products with columns marginalised, and what that adds to the log density.
+
+    Parameters
+    ----------
+    gram : ndarray, shape (K, K)
+        The measured force last.
+    taken : ndarray of int, shape (T,)
+        Columns to marginalise.
+    spread : ndarray, shape (T,)
+        Standard deviation of their coefficients beforehand.
+
+    Returns
+    -------
+    gram : ndarray, shape (K, K)
+        Of all columns; those taken mean nothing in it.
+    gain : float
+        Nats.
+    """
+    inner = np.eye(taken.size) + spread[:, None] * gram[np.ix_(taken, taken)] * spread
+    factor = np.linalg.cholesky(inner)
+    half = np.linalg.solve(factor, spread[:, None] * gram[taken])
+    left = gram - half.T @ half
+    gain = 0.5 * float(half[:, -1] @ half[:, -1]) - float(np.sum(np.log(np.diag(factor))))
+    return left, gain

@@ -1,0 +1,161 @@
+"""One more term: which one, if any, makes the records more probable."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from discover.posterior.assess import Assessed, Assessor
+from discover.posterior.catalogue import trials_of
+from discover.posterior.climb import QUIET, Place
+from discover.posterior.weigh import Gain, gains
+from models.constitutive import FittedTerm, ForceModel
+from models.terms import TERMS
+
+_NAMES = 5  # that are fitted, of those that gain most
+_SHAPES = 2  # of each, from which a fit starts
+_IMPACTS = 5  # likewise, where there are impacts
+_HOPELESS = -3.0  # nats of gain, below which nothing is fitted
+_HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
+_NEARLY = 0.8  # likewise, where another explains all but noise already
+_NATS = 20.0  # less than that
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A term beside a model."""
+
+    id: str
+    """Of the term; "" for the model as it is."""
+    value: float
+    """Log evidence with the prior, nats."""
+    assessed: Assessed | None
+    """The model with it; None where it was weighed in a straight line only."""
+    count: int = 0
+    """Number of terms that were added."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """What may join a model, weighed."""
+
+    candidates: tuple[Candidate, ...]
+    """Most probable first; the model as it is among them."""
+
+    @property
+    def best(self) -> Candidate:
+        """The most probable."""
+        return self.candidates[0]
+
+    @property
+    def probabilities(self) -> dict[str, float]:
+        """Of every id, and of "" for the model as it is."""
+        values = np.array([c.value for c in self.candidates])
+        shares = np.exp(values - logsumexp(values))
+        return {c.id: float(p) for c, p in zip(self.candidates, shares, strict=True)}
+
+
+def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
+    """Return what may join a model.
+
+    Terms that only add a force come first. Those that are simulated in time, which takes long, are
+    tried where these leave more than noise.
+
+    Parameters
+    ----------
+    assessor : Assessor
+        Of the records.
+    now : Assessed
+        The model as it is.
+    ids : collection of str
+        Terms that may join.
+    """
+    found = [Candidate("", now.value, now)]
+    if now.quiet and now.place.powers[0] <= QUIET.powers[0] + 1:
+        pass
+    for simulated in (False, True):
+        chosen = [i for i in ids if _simulated(i) is simulated]
+        if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
+            continue
+        found += _tried(assessor, now, chosen, len(ids))
+    return Step(tuple(sorted(found, key=lambda c: -c.value)))
+
+
+def _simulated(identifier: str) -> bool:
+    term = TERMS[identifier]
+    return term.acts == "input" or term.impacts is not None
+
+
+def _tried(
+    assessor: Assessor, now: Assessed, ids: Sequence[str], among: int
+) -> list[Candidate]:
+    space = assessor.space
+    whole = ForceModel(tuple(p.fitted for p in now.model.terms))
+    trials = trials_of(space, ids, whole, among=among)
+    if not trials.entries:
+        return []
+    curve = assessor.curve_of(now.model)
+    best: dict[str, list[Gain]] = {}
+    for place in dict.fromkeys((now.place, QUIET)):
+        sizes = place.sizes(space.own_unit)
+        for gain in gains(space, trials, now.local, sizes, curve):
+            best.setdefault(gain.trial.id, []).append(gain)
+    for one in best.values():
+        one.sort(key=lambda g: -g.value)
+    ranked = sorted(best.values(), key=lambda g: -g[0].value)
+    most = ranked[0][0].value
+    found: list[Candidate] = []
+    for place, one in enumerate(ranked):
+        value = one[0].value
+        near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
+        if place >= _NAMES or value < max(_HOPELESS, near * most - _NATS):
+            found.append(Candidate(one[0].trial.id, now.value + min(value, 0.0), None))
+        else:
+            found.append(_fitted(assessor, now, one))
+    return found
+
+
+def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:
+    """Return a term beside the model, fitted from its best shapes."""
+    impacts = starts[0].trial.terms[0].term.impacts is not None
+    most = _IMPACTS if impacts else _SHAPES
+    chosen: list[Gain] = []
+    for gain in starts:
+        if all(gain.trial is not c.trial for c in chosen):
+            chosen.append(gain)
+        if len(chosen) == most:
+            break
+    begun = []
+    for gain in chosen:
+        terms = _begun(gain)
+        model = now.model.plus(*terms)
+        steps = 3 if len(chosen) > 1 else 12
+        begun.append((assessor.assess(model, _between(now.place), iterations=steps), gain))
+    begun.sort(key=lambda b: -(b[0].value + b[1].trial.log_prior))
+    first, gain = begun[0]
+    first = assessor.assess(first.model, first.place)
+    return Candidate(
+        gain.trial.id, first.value + gain.trial.log_prior, first, len(gain.trial.terms)
+    )
+
+
+def _between(place: Place) -> Place:
+    """Return sizes half-way to those of noise."""
+    return Place(
+        tuple((p + q) // 2 for p, q in zip(place.powers, QUIET.powers, strict=True))  # type: ignore[arg-type]
+    )
+
+
+def _begun(gain: Gain) -> list[FittedTerm]:
+    """Return the terms of a trial at the size at which they gain most, within their bounds."""
+    found = []
+    for t, size in zip(gain.trial.terms, gain.coefficients, strict=True):
+        low, high = t.term.coefficient_bounds(t.shape)
+        value = float(np.clip(size, low, high))
+        if value == 0.0:
+            value = t.coefficient if t.term.acts != "force" else 1e-9
+        found.append(FittedTerm(t.id, value, t.shape))
+    return found

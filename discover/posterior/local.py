@@ -1,0 +1,180 @@
+"""A model near its best values: linear in its numbers there, and fitted at given sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from discover.posterior.covariance import Sizes
+from discover.posterior.evidence import Solved, solved
+from discover.posterior.metric import compared
+from discover.posterior.model import Composite, Evaluator, Number
+from discover.posterior.space import Part, Space
+from models.checks import Array
+from models.terms import Scales
+
+_ITERATIONS = 12
+_ENOUGH = 0.02  # nats, of a step's gain
+_HALVINGS = 6
+_STRIDE = 0.5  # of a shape parameter's value, or of its range, in one step at most
+
+
+@dataclass(frozen=True)
+class Local:
+    """A model with its slopes."""
+
+    model: Composite
+    """At the values around which it is linear."""
+    numbers: tuple[Number, ...]
+    """P of them that are free."""
+    force: Array
+    """(U, R) its rows."""
+    slopes: Array
+    """(U, P, R)."""
+    spread: Array
+    """(P,) standard deviation of each number beforehand: of a coefficient from zero, of a shape
+    parameter from where it is."""
+    sign: Array
+    """(P,) 1 where a coefficient can't be negative, -1 where not positive, else 0."""
+
+    @property
+    def values(self) -> Array:
+        """(P,) of the numbers; shape parameters count from where they are."""
+        return np.array(
+            [0.0 if n.shape is not None else self.model.value(n) for n in self.numbers]
+        )
+
+    def target(self, measured: Array) -> Array:
+        """Return what the slopes times the numbers shall make (U, R) of a measured force."""
+        return measured - self.force + np.einsum("p,upr->ur", self.values, self.slopes)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A model's evidence at some sizes, its numbers' posterior, and the curve's scale."""
+
+    value: float
+    """Log evidence, nats, averaged over the curve's scales."""
+    scale: float
+    """Of the curve, where most of the evidence is."""
+    solved: Solved
+    """At that scale."""
+
+
+def local_of(
+    space: Space,
+    evaluator: Evaluator,
+    model: Composite,
+    numbers: Sequence[Number] | None = None,
+) -> Local:
+    """Return a model's linear form around its values; all its numbers are free by default."""
+    free = model.numbers if numbers is None else tuple(numbers)
+    at = evaluator.force(model)
+    slopes = evaluator.slopes(model, free, at)
+    spread, sign = np.ones(len(free)), np.zeros(len(free))
+    sizes = space.sheet.scale(slopes)
+    for i, n in enumerate(free):
+        fitted = model.terms[n.term].fitted
+        if n.shape is None:
+            low, high = fitted.term.coefficient_bounds(fitted.shape)
+            spread[i] = min(sizes[i], max(-low, high))
+            sign[i] = float(low >= 0.0) - float(high <= 0.0)
+        else:
+            low, high = shape_bounds(model, n, space.scales)
+            spread[i] = (high - low) / np.sqrt(12.0)
+    return Local(model, free, at, slopes, spread, sign)
+
+
+def shape_bounds(model: Composite, number: Number, scales: Scales) -> tuple[float, float]:
+    """Return the sensible range of a shape parameter, that holds its value."""
+    fitted = model.terms[number.term].fitted
+    parameter = next(p for p in fitted.term.parameters if p.name == number.shape)
+    size = scales.size(parameter.scaled_by)
+    value = fitted.shape[parameter.name]
+    return min(parameter.lower * size, value), max(parameter.upper * size, value)
+
+
+def judged(space: Space, local: Local, sizes: Sizes, curve: Part | None) -> Judged:
+    """Return a model's evidence at some sizes."""
+    target = local.target(space.sheet.target)[:, None]
+    columns = np.concatenate([local.slopes, target], axis=1)
+    values, found = [], []
+    for at in compared(space, sizes, columns, curve):
+        normal = at.log_normal - 0.5 * float(at.gram[-1, -1])
+        one = solved(at.gram[:-1, :-1], at.gram[:-1, -1], local.spread, local.sign, normal)
+        values.append(float(one.log_evidence))
+        found.append((at.scale, one))
+    best = int(np.argmax(values))
+    value = float(logsumexp(values)) - float(np.log(len(values)))
+    return Judged(value, *found[best])
+
+
+def fitted(
+    space: Space,
+    evaluator: Evaluator,
+    model: Composite,
+    sizes: Sizes,
+    curve: Part | None,
+    *,
+    numbers: Sequence[Number] | None = None,
+    iterations: int = _ITERATIONS,
+) -> Local:
+    """Return the model at the values that are most probable at some sizes.
+
+    By Gauss and Newton: a step to where the linear form is most probable, halved as long as that
+    is no better.
+    """
+    here = local_of(space, evaluator, model, numbers)
+    if not here.numbers:
+        return here
+    best = _density(space, here, sizes, curve)
+    for _ in range(iterations):
+        answer = judged(space, here, sizes, curve)
+        wanted = answer.solved.mean
+        share, there, value = 1.0, here, best
+        for _ in range(_HALVINGS):
+            values = _bounded(here, wanted, share, space.scales)
+            trial = here.model.with_values(here.numbers, values)
+            there = local_of(space, evaluator, trial, here.numbers)
+            value = _density(space, there, sizes, curve)
+            if value > best:
+                break
+            share *= 0.4
+        else:
+            return here
+        gained, here, best = value - best, there, value
+        if gained < _ENOUGH:
+            break
+    return here
+
+
+def _bounded(local: Local, wanted: Array, share: float, scales: Scales) -> list[float]:
+    """Return values part of the way to those wanted, within bounds and no stride too long."""
+    result = []
+    for n, at, goal in zip(local.numbers, local.values, wanted, strict=True):
+        fitted_term = local.model.terms[n.term].fitted
+        if n.shape is None:
+            low, high = fitted_term.term.coefficient_bounds(fitted_term.shape)
+            value = at + share * (goal - at)
+            result.append(float(np.clip(value, min(low, at), max(high, at))))
+            continue
+        old = fitted_term.shape[n.shape]
+        low, high = shape_bounds(local.model, n, scales)
+        stride = _STRIDE * max(abs(old), 0.1 * (high - low))
+        value = old + float(np.clip(share * goal, -stride, stride))
+        result.append(float(np.clip(value, low, high)))
+    return result
+
+
+def _density(space: Space, local: Local, sizes: Sizes, curve: Part | None) -> float:
+    """Return the log density of a model at its very values, with their prior, nats."""
+    left = (space.sheet.target - local.force)[:, None]
+    if not np.all(np.isfinite(left)):
+        return -np.inf
+    values = [
+        at.log_normal - 0.5 * float(at.gram[0, 0]) for at in compared(space, sizes, left, curve)
+    ]
+    return float(logsumexp(values)) - 0.5 * float(np.sum((local.values / local.spread) ** 2))

@@ -1,0 +1,191 @@
+"""A model as it is fitted: terms in some or all units, and which of their numbers are free."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from discover.posterior.columns import force_columns, moved
+from discover.posterior.sheet import Sheet
+from discover.rows import RecordRows, force_rows
+from models.checks import Array
+from models.constitutive import FittedTerm, ForceModel
+from models.terms import Scales
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A term and how much of it is there in each unit."""
+
+    fitted: FittedTerm
+    """With its values."""
+    share: tuple[float, ...] | None = None
+    """(U,) from 0 to 1; None for all of it in all."""
+    held: bool = False
+    """True where none of its numbers is fitted."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number of a model that may be fitted."""
+
+    term: int
+    """Place of its term."""
+    shape: str | None
+    """Name of the shape parameter; None for the coefficient."""
+
+
+@dataclass(frozen=True)
+class Composite:
+    """Terms, each in some or all units."""
+
+    terms: tuple[Placed, ...]
+    """In any order."""
+
+    @classmethod
+    def of(cls, model: ForceModel, *, held: bool = False) -> Composite:
+        """Return a model that holds in all units."""
+        return cls(tuple(Placed(t, held=held) for t in model.terms))
+
+    @property
+    def numbers(self) -> tuple[Number, ...]:
+        """All that may be fitted; a parameter at its limit stays."""
+        found = []
+        for place, placed in enumerate(self.terms):
+            if placed.held:
+                continue
+            found.append(Number(place, None))
+            found += [Number(place, name) for name in fitted_names(placed.fitted)]
+        return tuple(found)
+
+    def value(self, number: Number) -> float:
+        """Return a number's value."""
+        fitted = self.terms[number.term].fitted
+        return fitted.coefficient if number.shape is None else fitted.shape[number.shape]
+
+    def with_values(self, numbers: Sequence[Number], values: Sequence[float]) -> Composite:
+        """Return the model with other values."""
+        terms = list(self.terms)
+        for number, value in zip(numbers, values, strict=True):
+            old = terms[number.term].fitted
+            if number.shape is None:
+                new = FittedTerm(old.id, float(value), old.shape)
+            else:
+                new = FittedTerm(
+                    old.id, old.coefficient, {**old.shape, number.shape: float(value)}
+                )
+            terms[number.term] = replace(terms[number.term], fitted=new)
+        return Composite(tuple(terms))
+
+    def plus(self, *terms: FittedTerm) -> Composite:
+        """Return the model with more terms, in all units."""
+        return Composite((*self.terms, *(Placed(t) for t in terms)))
+
+    def without(self, place: int) -> Composite:
+        """Return the model without one term."""
+        return Composite(tuple(t for i, t in enumerate(self.terms) if i != place))
+
+    def in_unit(self, unit: int) -> ForceModel:
+        """Return the model as it is in one unit."""
+        terms = []
+        for placed in self.terms:
+            share = 1.0 if placed.share is None else placed.share[unit]
+            if share > 0.0:
+                t = placed.fitted
+                terms.append(FittedTerm(t.id, share * t.coefficient, t.shape))
+        return ForceModel(tuple(terms))
+
+    @property
+    def adds_up(self) -> bool:
+        """True where its force is the sum of what its terms add."""
+        return all(p.fitted.term.acts == "force" for p in self.terms)
+
+
+def fitted_names(fitted: FittedTerm) -> list[str]:
+    """Return the shape parameters of a term that a fit may change: not choices, nor limits."""
+    found = []
+    for p in fitted.term.parameters:
+        value = fitted.shape[p.name]
+        limit = value == p.default and not p.lower <= p.default <= p.upper
+        if p.fitted and not limit and value != 0.0:
+            found.append(p.name)
+    return found
+
+
+class Evaluator:
+    """Rows of models and of their numbers' slopes; what a unit of a term adds is kept."""
+
+    def __init__(self, sheet: Sheet, scales: Scales, *, coarse: bool = False) -> None:
+        self._sheet = sheet
+        self._scales = scales
+        self._rows: tuple[RecordRows, ...] = tuple(
+            r.coarse if coarse else r for r in sheet.rows
+        )
+        self._known: dict[tuple[object, ...], Array] = {}
+
+    def unit(self, fitted: FittedTerm) -> Array:
+        """Return the rows (U, R) of a unit of a term that adds a force."""
+        key = (fitted.id, *fitted.shape.items())
+        if key not in self._known:
+            one = FittedTerm(fitted.id, 1.0, fitted.shape)
+            blocks = [force_columns(r, [one]) for r in self._rows]
+            self._known[key] = self._sheet.stack(blocks)[:, 0]
+        return self._known[key]
+
+    def force(self, model: Composite) -> Array:
+        """Return a model's rows (U, R)."""
+        if model.adds_up:
+            total = np.zeros_like(self._sheet.target)
+            for placed in model.terms:
+                share = 1.0 if placed.share is None else np.array(placed.share)[:, None]
+                total += placed.fitted.coefficient * share * self.unit(placed.fitted)
+            return total
+        return self._changed(model)
+
+    def _changed(self, model: Composite) -> Array:
+        """Return the rows of a model whose motion or force is changed."""
+        blocks: list[Array] = []
+        known: dict[tuple[int, tuple[object, ...]], Array] = {}
+        for place, unit in enumerate(self._sheet.units):
+            here = model.in_unit(place)
+            key = (unit.record, tuple((t.id, t.coefficient, *t.shape.items()) for t in here.terms))
+            if key not in known:
+                with np.errstate(over="ignore", invalid="ignore"):  # a joint may shake itself apart
+                    known[key] = force_rows(self._rows[unit.record], here)
+            own = known[key]
+            blocks.append(own[None] if unit.basis is None else own[None][:, unit.part] @ unit.basis)
+        size = self._sheet.target.shape[1]
+        result = np.zeros((len(blocks), size))
+        for place, block in enumerate(blocks):
+            result[place, : block.shape[1]] = block[0]
+        return result
+
+    def slopes(self, model: Composite, numbers: Sequence[Number], at: Array) -> Array:
+        """Return the change (U, P, R) of a model's rows (U, R) with each number."""
+        found = []
+        linear = model.adds_up
+        for number in numbers:
+            placed = model.terms[number.term]
+            share = 1.0 if placed.share is None else np.array(placed.share)[:, None]
+            if linear and number.shape is None:
+                found.append(share * self.unit(placed.fitted))
+                continue
+            if number.shape is None:
+                step = 1e-3 * abs(placed.fitted.coefficient) or 1e-6
+                value = placed.fitted.coefficient + step
+            else:
+                shape, step = moved(
+                    placed.fitted.term, dict(placed.fitted.shape), number.shape, self._scales
+                )
+                value = shape[number.shape]
+            other = model.with_values([number], [value])
+            if linear:
+                there = other.terms[number.term].fitted
+                change = self.unit(there) - self.unit(placed.fitted)
+                found.append(placed.fitted.coefficient * share * change / step)
+                continue
+            change = (self.force(other) - at) / step
+            found.append(np.where(np.isfinite(change), change, 0.0))
+        return np.stack(found, axis=1) if found else np.zeros((at.shape[0], 0, at.shape[1]))

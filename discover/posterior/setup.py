@@ -1,0 +1,58 @@
+"""From records to the space of models: friction's curve, and what units may have of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from discover.posterior.columns import force_columns, scales_of
+from discover.posterior.sheet import sheet_of
+from discover.posterior.space import Part, Space, curve_part
+from discover.rows import RecordRows
+from models.checks import Array
+from models.constitutive import FittedTerm
+from models.terms import Term
+
+_OWN = (0.1, 0.5, 0.9)
+"""Shares of a term's curves, in their order, at which one may be a unit's own."""
+
+ColumnsOf = Callable[[RecordRows, Sequence[FittedTerm]], Array]
+"""Gives the rows (K, R) of terms in a record."""
+
+
+def space_of(
+    rows: Sequence[RecordRows],
+    term: Term,
+    *,
+    columns_of: ColumnsOf = force_columns,
+    targets: Sequence[Array] | None = None,
+) -> tuple[Space, Part]:
+    """Return the space of models of records, and friction with its curves.
+
+    Parameters
+    ----------
+    rows : sequence of RecordRows
+        Of the records that are fitted.
+    term : Term
+        Friction: what units may have of their own, besides what all share.
+    columns_of : callable
+        Gives terms' rows in a record.
+    targets : sequence of ndarray, shape (R_r,), optional
+        What models shall make, where not the measured force.
+    """
+    scales = scales_of(rows)
+    shapes = term.curves(scales) if term.curves is not None else [term.shape({})]
+    units = [FittedTerm(term.id, 1.0, dict(s)) for s in shapes]
+    blocks = [columns_of(r, units) for r in rows]
+    shown = rows
+    if targets is not None:
+        shown = [replace(r, target=t) for r, t in zip(rows, targets, strict=True)]
+    sheet = sheet_of(shown, blocks)
+    count = blocks[0].shape[0]
+    chosen = sorted({min(int(share * count), count - 1) for share in _OWN} - {0})
+    own = sheet.stack([np.concatenate([b[:1], b[chosen] - b[:1]]) for b in blocks])
+    empty = np.zeros((len(sheet.units), 0, sheet.target.shape[1]))
+    space = Space(sheet, scales, empty, own, float(sheet.scale(own[:, :1])[0]), columns_of)
+    return space, curve_part(space, blocks, term)

@@ -1,0 +1,186 @@
+"""All records' rows in one array: what the posterior is computed on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from discover.rows import RecordRows
+from models.checks import Array, Indices
+
+_MOST_ROWS = 96  # of a unit of windows, after compression
+_SEEN = 0.1  # of the noise, below which a direction of all columns together shows nothing
+_ALIKE = 0.3  # of the logarithm of frequency and of amplitude, within which windows are one unit
+_KERNEL = 1e-3  # of the greatest, below which a direction of the remainder is left out
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A record, or windows of one that are alike: what a band holds or doesn't."""
+
+    record: int
+    """Place of its record."""
+    part: Indices
+    """(P,) its rows among the record's."""
+    frequency: float
+    """Hz."""
+    amplitude: float
+    """m."""
+    speed: float
+    """m/s, velocity amplitude."""
+    basis: Array | None = None
+    """(P, R) directions that are kept of its rows; None where all are."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The rows of all units, padded with zeros to the same number R."""
+
+    rows: tuple[RecordRows, ...]
+    """Of the records."""
+    units: tuple[Unit, ...]
+    """U of them, in the records' order."""
+    target: Array
+    """(U, R) measured force, white but for what models miss."""
+    remainder: Array
+    """(U, F, R) generic functions of the motion."""
+    loudness: Array
+    """(U, R) what an independent error of the record's own size is in each row."""
+    rest: Array
+    """(U, 3): number of rows that were left out, their sum of squares, mean loudness squared."""
+
+    def stack(self, columns: Sequence[Array]) -> Array:
+        """Return columns (K, R_r) of every record as one array (U, K, R)."""
+        found = []
+        for unit in self.units:
+            own = columns[unit.record]
+            if unit.basis is not None:
+                own = own[:, unit.part] @ unit.basis
+            found.append(own)
+        return padded(found, self.target.shape[1])
+
+    @cached_property
+    def size(self) -> Array:
+        """(U,) length of each unit's measured force."""
+        return np.asarray(np.linalg.norm(self.target, axis=1))
+
+    @cached_property
+    def kernel(self) -> Array:
+        """(U, Q) square root of how alike the remainder is in two units.
+
+        Squared exponential in the logarithms of frequency and amplitude, of length one each.
+        """
+        place = np.log([[u.frequency, u.amplitude] for u in self.units])
+        apart = np.sum((place[:, None] - place[None]) ** 2, axis=2)
+        values, vectors = np.linalg.eigh(np.exp(-0.5 * apart))
+        kept = values > _KERNEL * values[-1]
+        return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
+
+    def scale(self, column: Array) -> Array:
+        """Return the coefficients (K,) at which columns (U, K, R) make the whole force."""
+        share = np.linalg.norm(column, axis=2) / np.maximum(self.size, 1e-300)[:, None]
+        return np.asarray(1.0 / np.maximum(np.sqrt(np.mean(share**2, axis=0)), 1e-300))
+
+
+def sheet_of(rows: Sequence[RecordRows], columns: Sequence[Array]) -> Sheet:
+    """Return the sheet of records.
+
+    Parameters
+    ----------
+    rows : sequence of RecordRows
+        One record or more.
+    columns : sequence of ndarray, shape (K, R_r)
+        What models are made of, in every record: of windows only directions in which these, the
+        remainder or the measured force show are kept.
+    """
+    units: list[Unit] = []
+    parts: list[tuple[Array, Array, Array]] = []
+    rest = []
+    for place, (r, own) in enumerate(zip(rows, columns, strict=True)):
+        for unit in _units(r, place):
+            target, loudness = r.target[unit.part], r.loudness[unit.part]
+            remainder = r.remainder[:, unit.part]
+            left = np.zeros(3)
+            if unit.basis is None and r.cycle is None:
+                basis = _basis(own[:, unit.part], remainder, target)
+                unit = Unit(
+                    unit.record, unit.part, unit.frequency, unit.amplitude, unit.speed, basis
+                )
+                energy = float(target @ target)
+                mean = float(np.mean(loudness**2))
+                target, remainder = target @ basis, remainder @ basis
+                loudness = np.sqrt(np.sum((loudness[:, None] * basis) ** 2, axis=0))
+                left = np.array(
+                    [unit.part.size - basis.shape[1], max(energy - float(target @ target), 0.0),
+                     mean]
+                )
+            units.append(unit)
+            parts.append((target[None], remainder, loudness[None]))
+            rest.append(left)
+    size = max(p[0].shape[1] for p in parts)
+    functions = max(p[1].shape[0] for p in parts)
+    remainder = np.zeros((len(parts), functions, size))
+    for i, p in enumerate(parts):
+        remainder[i, : p[1].shape[0], : p[1].shape[1]] = p[1]
+    return Sheet(
+        tuple(rows), tuple(units), padded([p[0] for p in parts], size)[:, 0], remainder,
+        padded([p[2] for p in parts], size)[:, 0], np.array(rest),
+    )  # fmt: skip
+
+
+def padded(blocks: Sequence[Array], size: int) -> Array:
+    """Return blocks (K, R_i) as one array (n, K, size), with zeros at the end of rows."""
+    result = np.zeros((len(blocks), blocks[0].shape[0], size))
+    for i, block in enumerate(blocks):
+        result[i, :, : block.shape[1]] = block
+    return result
+
+
+def _units(rows: RecordRows, place: int) -> list[Unit]:
+    """Return a record's units: itself, or neighbouring windows that are alike."""
+    groups: list[list[int]] = []
+    windows = rows.observation.windows
+    for i, w in enumerate(windows):
+        if groups:
+            first = windows[groups[-1][0]]
+            apart = max(
+                abs(np.log(max(w.frequency, 1e-12) / max(first.frequency, 1e-12))),
+                abs(np.log(max(w.amplitude, 1e-12) / max(first.amplitude, 1e-12))),
+            )
+            if apart < _ALIKE:
+                groups[-1].append(i)
+                continue
+        groups.append([i])
+    found = []
+    for group in groups:
+        part = np.concatenate(
+            [np.arange(rows.windows[i].start, rows.windows[i].stop) for i in group]
+        )
+        share = np.array([windows[i].share for i in group])
+        share = share / share.sum()
+        mean = {
+            name: float(np.exp(share @ np.log([max(getattr(windows[i], name), 1e-12)
+                                               for i in group])))
+            for name in ("frequency", "amplitude", "speed")
+        }
+        found.append(Unit(place, part, **mean))
+    return found
+
+
+def _basis(columns: Array, remainder: Array, target: Array) -> Array:
+    """Return orthonormal directions (P, R): the target's, then those in which columns show."""
+    size = float(np.linalg.norm(target))
+    whole = np.concatenate([columns, remainder])
+    norm = np.linalg.norm(whole, axis=1)
+    whole = whole[norm > 0.0] * (size / norm[norm > 0.0])[:, None]
+    _, values, directions = np.linalg.svd(whole, full_matrices=False)
+    shown = int(np.count_nonzero(values > _SEEN))
+    kept = directions[: min(shown, _MOST_ROWS - 1)]
+    left = target - kept.T @ (kept @ target)
+    length = float(np.linalg.norm(left))
+    if length > 1e-9 * max(size, 1e-300):
+        kept = np.concatenate([kept, left[None] / length])
+    return np.asarray(kept.T)

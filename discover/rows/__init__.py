@@ -1,0 +1,15 @@
+"""A campaign's records as rows, and models on them: reduced once, for every verb."""
+
+from discover.motion_fit import Observation
+from discover.rows.band_rows import band_rows
+from discover.rows.force import force_at_samples, force_rows
+from discover.rows.record_rows import RecordRows
+from discover.rows.sine_rows import sine_rows
+
+
+def record_rows(observation: Observation) -> RecordRows:
+    """Return the rows of a record of any kind."""
+    return sine_rows(observation) if observation.kind == "sine" else band_rows(observation)
+
+
+__all__ = ["RecordRows", "force_at_samples", "force_rows", "record_rows"]

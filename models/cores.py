@@ -1,0 +1,83 @@
+"""The named structures: which terms make each, beside friction and what else a device may have."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from itertools import combinations
+
+
+@dataclass(frozen=True)
+class Core:
+    """A structure by its terms."""
+
+    name: str
+    """As documents state it."""
+    family: str
+    """"fractional" or "integer"."""
+    required: tuple[str, ...]
+    """Ids of terms that it always has."""
+    optional: tuple[str, ...] = ()
+    """Ids of terms that it may have besides."""
+    within: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Range of a term's shape parameter, by the term's id, where it is not the term's own."""
+
+    @property
+    def variants(self) -> tuple[tuple[str, ...], ...]:
+        """Every set of ids that is this structure."""
+        return tuple(
+            (*self.required, *more)
+            for size in range(len(self.optional) + 1)
+            for more in combinations(self.optional, size)
+        )
+
+
+FRICTION = "coulomb-friction"
+"""Dry friction: every structure may have it."""
+
+OTHER = "other"
+"""Name of what none of the structures is."""
+
+CORES = (
+    Core("FOIM", "fractional", ("fractional-derivative",)),
+    Core("IOIM-linear", "integer", ("inertia",), ("viscous-damping",)),
+    Core("IOIM-laminar", "integer", ("inertia", "quadratic-damping"), ("viscous-damping",)),
+    Core(
+        "IOIM-turbulent", "integer", ("inertia", "power-law-damping"),
+        ("viscous-damping", "quadratic-damping"), {"power-law-damping": (1.5, 2.0)},
+    ),
+    Core(OTHER, "integer", (), ("viscous-damping", "quadratic-damping")),
+)  # fmt: skip
+"""Chen & Chen, *Materials* 2025, 18(11), 2556, Eqs. 5 to 7; the last is a device without inertance.
+"""
+
+
+def family_of(ids: Collection[str]) -> str:
+    """Return "fractional", "integer" or "mixed" (a fractional term beside inertia or damping).
+
+    Examples
+    --------
+    >>> family_of(["fractional-derivative", "coulomb-friction"])
+    'fractional'
+    """
+    fractional = {i for c in CORES if c.family == "fractional" for i in c.required}
+    if not fractional & set(ids):
+        return "integer"
+    others = {i for c in CORES for i in (*c.required, *c.optional)} - fractional
+    return "mixed" if others & set(ids) else "fractional"
+
+
+def core_of(ids: Collection[str]) -> str:
+    """Return the name of the structure that is made of these terms and what all may have.
+
+    Examples
+    --------
+    >>> core_of(["inertia", "viscous-damping", "coulomb-friction", "stiffness"])
+    'IOIM-linear'
+    """
+    telling = {i for c in CORES for i in (*c.required, *c.optional)}
+    own = telling & set(ids)
+    for core in CORES:
+        if set(core.required) <= own <= {*core.required, *core.optional} and core.required:
+            return core.name
+    return OTHER
