@@ -8,14 +8,14 @@ the posterior of k and of the boundary's place.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from discover.triangle import WindowRows
 from models.checks import Array
 from models.device import Device
 from models.flow import dean_per_speed
@@ -80,37 +80,36 @@ class AmplitudeExponent:
 
 
 def amplitude_exponent(
-    windows: Sequence[WindowRows], below: Array, above: Array
+    frequency: Array, amplitude: Array, evidence: Callable[[NDArray[np.bool_]], Array]
 ) -> AmplitudeExponent | None:
     """Return how the boundary's frequency follows the amplitude.
 
     Parameters
     ----------
-    windows : sequence of WindowRows
-        The tests.
-    below, above : ndarray, shape (W,)
-        Log likelihood of each test under the lower and the upper band's model.
+    frequency, amplitude : ndarray, shape (T,)
+        Of the tests in the two bands, Hz and m.
+    evidence : callable
+        Log evidence (D,) of divisions, given which tests are in the upper band (D, T).
 
     Returns
     -------
     AmplitudeExponent or None
         None where the tests have one amplitude or one frequency only.
     """
-    amplitude = np.log(np.array([w.amplitude for w in windows]))
-    frequency = np.log(np.array([w.frequency for w in windows]))
-    if min(np.ptp(amplitude), np.ptp(frequency)) < np.log(_SAME):
+    a, f = np.log(amplitude), np.log(frequency)
+    if min(np.ptp(a), np.ptp(f)) < np.log(_SAME):
         return None
-    centre = amplitude.mean()
-    gain = below - above
-    logs = np.empty((_EXPONENTS.size, _PLACES))
-    low, high = frequency.min() - 1.0, frequency.max() + 1.0
+    centre = a.mean()
+    low, high = f.min() - 1.0, f.max() + 1.0
     places = np.linspace(low, high, _PLACES)
-    for row, k in enumerate(_EXPONENTS):
-        shifted = frequency - k * (amplitude - centre)
-        order = np.argsort(shifted)
-        total = np.concatenate(([0.0], np.cumsum(gain[order])))
-        logs[row] = total[np.searchsorted(shifted[order], places)]
-    inside = (places > frequency.min()) & (places < frequency.max())
+    shifted = f - _EXPONENTS[:, None] * (a - centre)
+    upper = shifted[:, None] > places[None, :, None]
+    masks, which = np.unique(
+        np.packbits(upper.reshape(-1, f.size), axis=1), axis=0, return_inverse=True
+    )
+    divisions = np.unpackbits(masks, axis=1, count=f.size).astype(bool)
+    logs = evidence(divisions)[which.ravel()].reshape(_EXPONENTS.size, _PLACES)
+    inside = (places > f.min()) & (places < f.max())
     logs = np.where(inside, logs, -np.inf)
     posterior = np.exp(logs - logsumexp(logs))
     of_k = posterior.sum(axis=1)

@@ -1,9 +1,8 @@
 """The test that would tell most: where the open structures' predictions differ, all told.
 
 For a sine test that the rig can do, each structure predicts the force's lines with what is still
-uncertain of its parameters. The expected log Bayes factor between two structures is the
-Kullback-Leibler divergence of these predictions, averaged over which of the two is true; it is
-evaluated on the library's columns, so a test costs a few small matrices.
+uncertain of its numbers. The expected log Bayes factor between two structures is the
+Kullback-Leibler divergence of these predictions, averaged over which of the two is true.
 
 Box, G. E. P. and Hill, W. J., Technometrics 9 (1967) 57: discrimination among mechanistic models.
 """
@@ -16,15 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from discover.library.dictionary import DELAY, Dictionary
 from discover.motion_fit.observation import real_rows
+from discover.posterior.model import Composite, Number
 from discover.records import RigLimits
-from discover.regression.covariance import jacobian_of
-from discover.regression.support import ProfiledFit, SupportFit
-from discover.selection.judge import Judgement
-from discover.triangle import WindowRows
 from models.checks import Array
-from models.motion import sine_motion
+from models.constitutive import ForceModel
+from models.motion import Motion, sine_motion
 
 _FREQUENCIES = 25
 _AMPLITUDES = 9
@@ -32,6 +28,7 @@ _LINES = 8  # the mean and seven harmonics carry what tells structures apart
 _SAMPLES = 128
 _WIDER = 2.0  # beyond the tested frequencies, where the rig's limits leave it open
 _LEAST_NOISE = 1e-3  # of the force: no new test is taken for better than this
+_STEP = 1e-4  # of a number, for its slope
 
 
 @dataclass(frozen=True)
@@ -57,16 +54,63 @@ class NextTest:
         }
 
 
+@dataclass(frozen=True)
+class Rival:
+    """A structure as it is known so far."""
+
+    name: str
+    """Of the structure."""
+    probability: float
+    """So far."""
+    model: Composite
+    """All that it holds."""
+    unit: int
+    """A unit of the band in question."""
+    numbers: tuple[Number, ...]
+    """P of them that are uncertain."""
+    covariance: Array
+    """(P, P)."""
+
+    def force(self, motion: Motion) -> Array:
+        """Return its force on a motion, (N,) N."""
+        return self.model.in_unit(self.unit).force(motion)
+
+    def lines(self, frequency: float, amplitude: float) -> tuple[Array, Array]:
+        """Return the mean (2 L,) and covariance (2 L, 2 L) of the lines in a sine test."""
+        motion = sine_motion(amplitude, frequency, samples=_SAMPLES)
+        forces = [self.force(motion)]
+        for n in self.numbers:
+            value = self.model.value(n)
+            step = _STEP * abs(value) or _STEP
+            other = self.model.with_values([n], [value - step])
+            moved: ForceModel = other.in_unit(self.unit)
+            forces.append((forces[0] - moved.force(motion)) / step)
+        rows = _rows(np.array(forces))
+        return rows[0], rows[1:].T @ self.covariance @ rows[1:]
+
+
+def _rows(forces: Array) -> Array:
+    """Return the lowest lines (K, 2 L) of forces (K, N) over one cycle."""
+    found = np.fft.rfft(forces, axis=-1)[:, :_LINES] * (np.sqrt(2.0) / forces.shape[-1])
+    found[:, 0] /= np.sqrt(2.0)
+    return real_rows(found)
+
+
 def admissible_tests(
-    windows: Sequence[WindowRows], limits: RigLimits | None
+    frequency: Array, amplitude: Array, limits: RigLimits | None
 ) -> tuple[Array, Array]:
     """Return frequencies (Hz) and amplitudes (m) of the tests that the rig can do, (T,) each.
 
     Limits that are not stated are those that the tests so far have reached.
+
+    Parameters
+    ----------
+    frequency, amplitude : ndarray, shape (W,)
+        Of the tests so far, Hz and m.
+    limits : RigLimits or None
+        The rig's.
     """
     given = limits or RigLimits()
-    amplitude = np.array([w.amplitude for w in windows])
-    frequency = np.array([w.frequency for w in windows])
     omega = 2.0 * np.pi * frequency
     stroke = given.max_stroke or float(amplitude.max())
     speed = given.max_speed or float((amplitude * omega).max())
@@ -81,103 +125,68 @@ def admissible_tests(
 
 
 def propose(
-    judgement: Judgement,
-    dictionary: Dictionary,
-    limits: RigLimits | None,
+    rivals: Sequence[Rival],
+    frequencies: Array,
+    amplitudes: Array,
     *,
-    inside: tuple[float, float] = (0.0, np.inf),
-    per_speed: float | None = None,
+    noise: float,
+    max_force: float | None = None,
 ) -> NextTest | None:
-    """Return the test that best separates a band's two leading structures.
+    """Return the test that best separates two structures.
 
     Parameters
     ----------
-    judgement : Judgement
-        Of the band.
-    dictionary : Dictionary
-        Of its columns.
-    limits : RigLimits or None
-        The rig's.
-    inside : tuple of float
-        Range of the coordinate in which the band holds; tests outside are left out.
-    per_speed : float, optional
-        Coordinate per m/s of speed amplitude; None where the coordinate is frequency.
+    rivals : sequence of Rival
+        The two.
+    frequencies, amplitudes : ndarray, shape (T,)
+        Tests that may be run, Hz and m.
+    noise : float
+        Standard deviation of a line over the force's root mean square.
+    max_force : float, optional
+        N, that the rig can take.
 
     Returns
     -------
     NextTest or None
-        None where only one structure stands, or no admissible test lies in the band.
+        None where no test may be run.
     """
-    ranked = sorted(judgement.probabilities.items(), key=lambda item: -item[1])[:2]
-    pair = [(name, judgement.contest.best(name), p) for name, p in ranked]
-    if len(pair) < 2 or pair[0][1] is None or pair[1][1] is None:
+    first, second = rivals
+    weight = first.probability / max(first.probability + second.probability, 1e-300)
+    best, most = None, -np.inf
+    for f, a in zip(frequencies, amplitudes, strict=True):
+        if max_force is not None:
+            force = first.force(sine_motion(a, f, samples=_SAMPLES))
+            if float(np.abs(force).max()) > max_force:
+                continue
+        gain = expected_gain(first, second, float(f), float(a), weight=weight, noise=noise)
+        if gain > most:
+            best, most = (float(f), float(a)), gain
+    if best is None:
         return None
-    frequencies, amplitudes = admissible_tests(judgement.windows, limits)
-    coordinate = frequencies if per_speed is None else (
-        2.0 * np.pi * frequencies * amplitudes * per_speed
-    )
-    kept = (coordinate > inside[0]) & (coordinate < inside[1])
-    if not kept.any():
-        return None
-    frequencies, amplitudes = frequencies[kept], amplitudes[kept]
-    fits = [judgement.engine.fit(s.fit.support) for _, s, _ in pair if s is not None]
-    spreads = [_spread(judgement.engine, fit, dictionary) for fit in fits]
-    weight = pair[0][2] / max(pair[0][2] + pair[1][2], 1e-300)
-    noise = relative_noise(judgement.windows)
-    gains = np.array(
-        [
-            expected_gain(f, a, fits, spreads, dictionary, weight=weight, noise=noise)
-            for f, a in zip(frequencies, amplitudes, strict=True)
-        ]
-    )
-    limit = limits.max_force if limits is not None else None
-    if limit is not None:
-        peaks = _peaks(frequencies, amplitudes, fits[0], dictionary)
-        gains = np.where(peaks <= limit, gains, -np.inf)
-    best = int(gains.argmax())
-    if not np.isfinite(gains[best]):
-        return None
-    return NextTest(
-        float(frequencies[best]),
-        float(amplitudes[best]),
-        (pair[0][0], pair[1][0]),
-        float(gains[best]),
-    )
+    return NextTest(*best, (first.name, second.name), float(most))
 
 
 def expected_gain(
-    frequency: float,
-    amplitude: float,
-    fits: Sequence[SupportFit],
-    spreads: Sequence[Array],
-    dictionary: Dictionary,
-    *,
-    weight: float,
-    noise: float,
+    first: Rival, second: Rival, frequency: float, amplitude: float, *, weight: float, noise: float
 ) -> float:
-    """Return the expected log Bayes factor between two fits in one test, nats.
+    """Return the expected log Bayes factor between two structures in one test, nats.
 
     Parameters
     ----------
+    first, second : Rival
+        The structures.
     frequency, amplitude : float
         Of the sine test, Hz and m.
-    fits : sequence of SupportFit
-        Two.
-    spreads : sequence of ndarray
-        Square roots of their parameters' covariances on the dictionary's columns, (K, p).
-    dictionary : Dictionary
-        Of the columns.
     weight : float
         Probability of the first against the second.
     noise : float
         Standard deviation of a line over the force's root mean square.
     """
-    rows = sine_rows(frequency, amplitude, dictionary)
-    means = [rows @ fit.combined for fit in fits]
-    roots = [rows @ spread for spread in spreads]
-    level = max(noise, _LEAST_NOISE) * max(float(np.linalg.norm(m)) for m in means)
-    floor = level**2 * np.eye(rows.shape[0])
-    covariances = [floor + root @ root.T for root in roots]
+    lines = [r.lines(frequency, amplitude) for r in (first, second)]
+    level = max(noise, _LEAST_NOISE) * max(float(np.linalg.norm(m)) for m, _ in lines)
+    floor = level**2 * np.eye(lines[0][0].size)
+    means = [m for m, _ in lines]
+    covariances = [floor + c for _, c in lines]
     return weight * _divergence(means, covariances) + (1.0 - weight) * _divergence(
         means[::-1], covariances[::-1]
     )
@@ -190,55 +199,3 @@ def _divergence(means: Sequence[Array], covariances: Sequence[Array]) -> float:
     logs = [np.linalg.slogdet(c)[1] for c in covariances]
     trace = float(np.trace(inverse @ covariances[0]))
     return 0.5 * float(trace - shift.size + shift @ inverse @ shift + logs[1] - logs[0])
-
-
-def sine_rows(
-    frequency: float, amplitude: float, dictionary: Dictionary, *, lines: int = _LINES
-) -> Array:
-    """Return (2 L, K) rows of the columns' lowest L lines in a sine test; the delay's are zero.
-
-    Parameters
-    ----------
-    frequency, amplitude : float
-        Of the test, Hz and m.
-    dictionary : Dictionary
-        Of the columns.
-    lines : int
-        L, the mean included; at most 65.
-    """
-    motion = sine_motion(amplitude, frequency, samples=_SAMPLES)
-    columns = dictionary.evaluate(motion)
-    found = np.fft.rfft(columns, axis=-1)[:, :lines] * (np.sqrt(2.0) / _SAMPLES)
-    found[:, 0] /= np.sqrt(2.0)
-    rows = real_rows(found).T
-    return np.column_stack([rows, np.zeros(rows.shape[0])]) if dictionary.has(DELAY) else rows
-
-
-def _spread(engine: ProfiledFit, fit: SupportFit, dictionary: Dictionary) -> Array:
-    """Return (K, p) whose product with its transpose is the covariance on the columns."""
-    jacobian = jacobian_of(fit, dictionary)
-    columns = engine.triangle.columns @ jacobian
-    norms = np.linalg.norm(columns, axis=0)
-    norms[norms == 0.0] = 1.0
-    _, values, right = np.linalg.svd(columns / norms, full_matrices=False)
-    scale = np.sqrt(max(fit.chi2 / max(engine.triangle.rows - fit.support.parameters, 1), 1.0))
-    inverse = np.where(values > 1e-9 * values[0], 1.0 / np.maximum(values, 1e-300), 0.0)
-    return np.asarray(jacobian @ ((right.T * inverse) / norms[:, None]) * scale)
-
-
-def relative_noise(windows: Sequence[WindowRows]) -> float:
-    """Return a line's standard deviation over its record's rms force, the median of `windows`."""
-    levels = [np.sqrt(np.median(w.total_variance) / max(w.power, 1e-300)) for w in windows]
-    return float(np.median(levels))
-
-
-def _peaks(
-    frequencies: Array, amplitudes: Array, fit: SupportFit, dictionary: Dictionary
-) -> Array:
-    combined = fit.combined[:-1] if dictionary.has(DELAY) else fit.combined
-    return np.array(
-        [
-            np.abs(combined @ dictionary.evaluate(sine_motion(a, f, samples=_SAMPLES))).max()
-            for f, a in zip(frequencies, amplitudes, strict=True)
-        ]
-    )

@@ -11,9 +11,15 @@ import numpy as np
 
 from discover.header import document_header
 from discover.motion_fit import Observation, observe_all
-from discover.naming.forces import model_force
 from discover.records import Campaign, Finding
-from discover.study.accuracy import Accuracy, compare, noise_percent, pooled_percent
+from discover.rows import (
+    Accuracy,
+    accuracy,
+    compared_with,
+    force_at_samples,
+    noise_percent,
+    pooled_percent,
+)
 from models.checks import Array, InputError
 from models.constitutive import ForceModel, SegmentedModel
 from models.flow import dean_per_speed
@@ -164,21 +170,21 @@ def simulate_forces(
 def predict_record(observation: Observation, model: Model) -> RecordPrediction:
     """Return a model's force on one record, with the band of a segmented model by window."""
     if isinstance(model, ForceModel):
-        return RecordPrediction(compare(observation, model_force(observation, model)), (0,))
+        return RecordPrediction(accuracy(observation, model), (0,))
     chosen = [_band(model, w.speed, w.frequency) for w in observation.windows]
-    forces = {b: model_force(observation, model.bands[b].model) for b in set(chosen)}
+    forces = {b: force_at_samples(observation, model.bands[b].model) for b in set(chosen)}
     if len(forces) == 1:
         force = forces[chosen[0]]
     else:
         # Windows follow each other; their shares of the duration say where each begins.
         ends = np.cumsum([w.share for w in observation.windows])
-        size = observation.motion.time.size
+        size = observation.measured.size
         at = np.searchsorted(ends[:-1] / ends[-1], (np.arange(size) + 0.5) / size)
         bands = np.array(chosen)[at]
         force = np.zeros(size)
         for band, values in forces.items():
             force[bands == band] = values[bands == band]
-    return RecordPrediction(compare(observation, force), tuple(sorted(forces)))
+    return RecordPrediction(compared_with(observation, force), tuple(sorted(forces)))
 
 
 def _band(model: SegmentedModel, speed: float, frequency: float) -> int:

@@ -17,13 +17,13 @@ from discover.bands.search import Banded, BandSearch, searched
 from discover.bands.variants import Grids, variants_of
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.climb import Place
-from discover.posterior.columns import Behind
 from discover.posterior.grow import Step, grown
 from discover.posterior.model import Evaluator
 from discover.posterior.setup import space_of
-from discover.posterior.space import Part, Space, departures, parts_of
+from discover.posterior.space import Part, Space, parts_of
 from discover.posterior.structures import Variant
 from discover.rows import RecordRows, force_rows
+from discover.rows.columns import Behind
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.cores import Core
@@ -100,7 +100,7 @@ class Device:
 
 def found(device: Device) -> Found:
     """Return the most probable bands, with what the device has besides."""
-    now = _searched(device, (), Place())
+    now = _searched(device, (), None)
     if now.banded.quiet:
         return now
     best = now
@@ -123,7 +123,7 @@ def found(device: Device) -> Found:
     return best
 
 
-def _searched(device: Device, joined: Sequence[Joined], place: Place,
+def _searched(device: Device, joined: Sequence[Joined], place: Place | None,
               behind: Assessed | None = None) -> Found:
     """Return the bands with what has joined."""
     space, curve, parts = _space(device, joined, behind)
@@ -179,7 +179,7 @@ def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
 def assessor_of(device: Device) -> Assessor:
     """Return what assesses models of a device's records."""
     space, curve = space_of(device.rows, device.friction)
-    return Assessor(space, Evaluator(space.sheet, space.scales), departures(curve, path=True))
+    return Assessor(space, Evaluator(space.sheet, space.scales), curve)
 
 
 def composite(device: Device, way: Found) -> Assessed:

@@ -10,7 +10,7 @@ from scipy.special import logsumexp
 
 from discover.bands.divisions import FEWEST, refined, sharp
 from discover.bands.variants import as_choice
-from discover.posterior.climb import QUIET, Place, climb
+from discover.posterior.climb import Place, climb
 from discover.posterior.space import Part, Space
 from discover.posterior.structures import (
     Choice,
@@ -108,6 +108,13 @@ class BandSearch:
         sums = sums_of_many(here, self.columns, self.common, self.scales()[scale], shares)
         return divided(sums, self.choice, start)
 
+    def only(self, variants: Sequence[int]) -> BandSearch:
+        """Return the search with some variants only."""
+        return BandSearch(
+            self.space, tuple(self.variants[v] for v in variants), self.friction, self.extras,
+            self.coordinates,
+        )  # fmt: skip
+
     def one_band(self, start: Place) -> Banded:
         """Return what holds where all units are one band."""
         whole = np.ones((1, 1, len(self.space.sheet.units)))
@@ -178,7 +185,7 @@ class BandSearch:
             value=total,
             place=place,
             scale=scale,
-            quiet=self._seen(QUIET, shares[best], variants, alone) > top - _DOUBT,
+            quiet=self._seen(self.space.quiet, shares[best], variants, alone) > top - _DOUBT,
         )
 
     def _seen(
@@ -200,19 +207,19 @@ def _kept(ends: Array, now: Banded, band: int, parts: Array) -> Array:
     return ends[kept]
 
 
-def searched(search: BandSearch, start: Place, *, bands: int | None = None) -> list[Banded]:
+def searched(search: BandSearch, start: Place | None = None, *, bands: int | None = None) -> list[Banded]:
     """Return the best division for every number of bands, as long as one more is more probable.
 
     Parameters
     ----------
     search : BandSearch
         Of the records.
-    start : Place
+    start : Place, optional
         Sizes to start from.
     bands : int, optional
         Number that is asked for; None lets the evidence choose.
     """
-    found = [search.one_band(start)]
+    found = [search.one_band(search.space.start if start is None else start)]
     most = MOST_BANDS if bands is None else bands
     while found[-1].bands < most:
         more = search.divided_again(found[-1])

@@ -32,10 +32,9 @@ def check(
     from discover.data_check import check_campaign
     from discover.readers import read_campaign
     from discover.report.check import check_figures, check_lines, check_report
-    from discover.study import StudyOptions
 
     with working(f"Checking {source}"):
-        answer = check_campaign(read_campaign(source), StudyOptions(seed=seed, jobs=jobs))
+        answer = check_campaign(read_campaign(source), seed=seed, jobs=jobs)
     with working("Drawing"):
         document = answer.to_dict()
         figures = check_figures(document, answer.figure_data)

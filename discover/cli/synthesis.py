@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from discover.cli.named_model import named_model
-from discover.naming.forces import of_number
 from models.checks import Array
 from models.device import PRESETS, Device
 from models.flow import dean
@@ -113,7 +112,7 @@ def model_records(
         cycles = math.ceil(point.cycles)
         motion = sine_motion(point.amplitude, point.frequency, samples=samples, cycles=cycles)
         band = law.at(_coordinate(law.coordinate, point, device, law.convention))
-        force = of_number(index + 1, band).force(motion)
+        force = band.force(replace(motion, test=index + 1))
         generator = np.random.default_rng([seed, _MODEL_NOISE, index])
         x, f = measure(motion.time, motion.displacement, force, chain, generator)
         made.append(

@@ -7,28 +7,30 @@ from collections.abc import Sequence
 from discover.data_check.added_test import added_test
 from discover.data_check.conditioning import conditioning
 from discover.data_check.figures import plan_figure_data
-from discover.data_check.plan import plan_rows
+from discover.data_check.plan import plan_of
 from discover.data_check.result import AddedTest, Conditioning, DataCheck, Inseparable, Pair
 from discover.data_check.separation import expected_pairs, inseparable_pairs
 from discover.data_check.sizes import size_findings
+from discover.motion_fit import observe_all
 from discover.record_checks import RecordCheck, check_records
 from discover.records import Campaign, Finding
-from discover.study.options import StudyOptions
-from discover.study.preparation import Prepared, prepare
+from discover.rows import RecordRows, record_rows
 
 _LEVELS = ("error", "warning", "note")
 _SAME = 0.05  # relative difference below which two amplitudes are one
 
 
-def check_campaign(campaign: Campaign, options: StudyOptions | None = None) -> DataCheck:
+def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataCheck:
     """Judge a campaign's data before anything is concluded from it.
 
     Parameters
     ----------
     campaign : Campaign
         As `discover.readers.read_campaign` returns it.
-    options : StudyOptions, optional
-        Only its seed and number of processes count.
+    seed : int
+        Kept in the document. Nothing in a check is random.
+    jobs : int
+        Threads for reading the records.
 
     Returns
     -------
@@ -39,34 +41,32 @@ def check_campaign(campaign: Campaign, options: StudyOptions | None = None) -> D
     InputError
         Where a record can't be used.
     """
-    chosen = options or StudyOptions()
     judged = check_records(campaign)
     found = [*size_findings(campaign, judged.records), *_plan_findings(judged.records)]
     findings = tuple(sorted((*judged.findings, *found), key=lambda f: _LEVELS.index(f.level)))
-    prepared: Prepared | None = None
+    rows: tuple[RecordRows, ...] = ()
     structures: tuple[Conditioning, ...] = ()
     pairs: tuple[Pair, ...] = ()
     inseparable: tuple[Inseparable, ...] = ()
     more: AddedTest | None = None
     if campaign.fitted:
-        prepared = prepare(campaign, chosen)
-        dictionary = prepared.dictionary
-        windows = plan_rows(prepared.fitted, prepared.observations, dictionary)
-        structures = conditioning(windows, dictionary)
-        pairs = expected_pairs(windows, dictionary)
-        inseparable = inseparable_pairs(pairs, windows)
-        more = added_test(pairs, windows, dictionary, campaign.rig)
+        rows = tuple(record_rows(o) for o in observe_all(campaign.records, jobs))
+        plan = plan_of([r for r in rows if not r.observation.held_out])
+        structures = conditioning(plan)
+        pairs = expected_pairs(plan)
+        inseparable = inseparable_pairs(pairs, plan)
+        more = added_test(pairs, plan, campaign.rig)
     return DataCheck(
         title=campaign.title,
         content_hash=campaign.content_hash,
-        seed=chosen.seed,
+        seed=seed,
         records=judged.records,
         findings=findings,
         structures=structures,
         pairs=pairs,
         inseparable=inseparable,
         added_test=more,
-        figure_data=plan_figure_data(campaign, judged.records, findings, prepared),
+        figure_data=plan_figure_data(campaign, judged.records, findings, rows),
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from discover.figure_data import PlanFigureData, PlannedTest
 from discover.record_checks import RecordCheck
 from discover.records import Campaign, Finding
-from discover.study.preparation import Prepared
+from discover.rows import RecordRows
 from models.flow import dean_per_speed
 
 _GRAVE = ("error", "warning")
@@ -19,7 +19,7 @@ def plan_figure_data(
     campaign: Campaign,
     records: Sequence[RecordCheck],
     findings: Sequence[Finding],
-    prepared: Prepared | None,
+    rows: Sequence[RecordRows],
 ) -> PlanFigureData:
     """Return every sine test, and every window of the other records, with noise and findings.
 
@@ -31,14 +31,14 @@ def plan_figure_data(
         In the campaign's order.
     findings : sequence of Finding
         Of the whole check.
-    prepared : Prepared or None
-        What the windows come from; None where no record may be fitted.
+    rows : sequence of RecordRows
+        Of all records; none where no record may be fitted.
     """
     tests: list[PlannedTest] = []
     for index, record in enumerate(records):
         found = {f.level for f in findings if f.record == record.file}
         level = next((grave for grave in _GRAVE if grave in found), "")
-        places = _places(index, record, prepared)
+        places = _places(index, record, rows)
         tests += [
             PlannedTest(
                 file=record.file,
@@ -60,15 +60,15 @@ def plan_figure_data(
 
 
 def _places(
-    index: int, record: RecordCheck, prepared: Prepared | None
+    index: int, record: RecordCheck, rows: Sequence[RecordRows]
 ) -> list[tuple[float, float, float | None]]:
     """Return frequency (Hz), amplitude (m) and noise (percent): of a sine test, else by window."""
     if record.frequency_hz and record.amplitude_m:
         return [(record.frequency_hz, record.amplitude_m, record.force_noise_percent)]
-    if prepared is None:
+    if not rows:
         return []
     return [
         (w.frequency, w.amplitude, 100.0 * float(np.sqrt(w.noise_power / w.power)))
-        for w in (*prepared.fitted, *prepared.held_out)
-        if w.record == index and w.frequency > 0.0 and w.amplitude > 0.0 and w.power > 0.0
+        for w in rows[index].observation.windows
+        if w.frequency > 0.0 and w.amplitude > 0.0 and w.power > 0.0
     ]

@@ -3,63 +3,109 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
-from discover.library.dictionary import Dictionary
-from discover.regression.support import ProfiledFit, Support
-from discover.selection.structures import FRACTIONAL, POWER, TURBULENT_EXPONENT
-from discover.triangle import Triangle
+from discover.data_check.plan import Plan
+from discover.regression.least_squares import solve
 from models.checks import Array
+from models.constitutive import FittedTerm
+from models.cores import CORES, FRICTION
+from models.terms import TERMS
 
 TELLING = math.log(20.0)
 """Nats from which a structure can be ruled out at 5 %."""
 
-_FRICTION = "coulomb-friction"
-_NOMINAL_ORDER = 1.5
-
-_SUPPORTS = {
-    "FOIM": Support((), free=(FRACTIONAL,)),
-    "IOIM-linear": Support(("inertia", "viscous-damping")),
-    "IOIM-laminar": Support(("inertia", "viscous-damping", "quadratic-damping")),
-    "IOIM-turbulent": Support(("inertia", "viscous-damping"), fixed=((POWER, TURBULENT_EXPONENT),)),
-}
+_SHAPES = 41  # at which a free shape is tried, before it is refined
+_STEP = 1e-4  # of a shape, for its slope
 
 
-def supports_of(dictionary: Dictionary) -> dict[str, Support]:
-    """Return each structure's terms by its name, with friction where the dictionary has it."""
-    if not dictionary.has(_FRICTION):
-        return dict(_SUPPORTS)
-    return {n: replace(s, plain=(*s.plain, _FRICTION)) for n, s in _SUPPORTS.items()}
+@dataclass(frozen=True)
+class Structure:
+    """A structure of a plan: one of its variants, with friction."""
+
+    name: str
+    """As documents state it."""
+    ids: tuple[str, ...]
+    """Of its terms, friction last."""
+    bounds: tuple[float, float] | None
+    """Of the shape of its first term, where that is free."""
+
+    @property
+    def nominal(self) -> float | None:
+        """Shape that the first term is given before it is fitted: three quarters up its range."""
+        if self.bounds is None:
+            return None
+        low, high = self.bounds
+        return low + 0.75 * (high - low)
+
+    def terms(self, shape: float | None) -> list[FittedTerm]:
+        """Return its terms, of coefficient one."""
+        found = [FittedTerm(i, 1.0) for i in self.ids]
+        if shape is not None:
+            name = TERMS[self.ids[0]].parameters[0].name
+            found[0] = FittedTerm(self.ids[0], 1.0, {name: shape})
+        return found
+
+    def slopes(self, plan: Plan) -> Array:
+        """Return the change (R, P) of its nominal force with each number, each term's own size."""
+        columns = plan.columns(self.terms(self.nominal))
+        if self.nominal is None:
+            return columns
+        moved = plan.columns(self.terms(self.nominal - _STEP))[:, :1]
+        return np.column_stack([columns, (columns[:, :1] - moved) / _STEP])
+
+    def force(self, plan: Plan) -> Array:
+        """Return a nominal force (R,): its terms but friction alike, as large as the measured one.
+        """
+        columns = plan.columns(self.terms(self.nominal))[:, :-1]
+        size = np.linalg.norm(columns, axis=0)
+        total = np.sum(columns[:, size > 0.0] / size[size > 0.0], axis=1)
+        length = float(np.linalg.norm(total))
+        return np.asarray(plan.size / length * total if length > 0.0 else total)
+
+    def coefficients(self, plan: Plan) -> list[FittedTerm]:
+        """Return the terms of its nominal force with their coefficients."""
+        columns = plan.columns(self.terms(self.nominal))[:, :-1]
+        values, _ = solve(columns, self.force(plan))
+        return [
+            FittedTerm(t.id, float(v), t.shape)
+            for t, v in zip(self.terms(self.nominal)[:-1], values, strict=True)
+        ]
+
+    def gap_to(self, force: Array, plan: Plan) -> float:
+        """Return half its squared misfit to a force (R,) over the noise, nats."""
+        if self.bounds is None:
+            return 0.5 * solve(plan.columns(self.terms(None)), force)[1]
+        low, high = self.bounds
+
+        def misfit(shape: float) -> float:
+            return 0.5 * solve(plan.columns(self.terms(float(shape))), force)[1]
+
+        values = np.linspace(low, high, _SHAPES)
+        found = [misfit(float(v)) for v in values]
+        best = int(np.argmin(found))
+        around = float(values[max(best - 1, 0)]), float(values[min(best + 1, _SHAPES - 1)])
+        refined = minimize_scalar(misfit, bounds=around, method="bounded")
+        return min(float(refined.fun), found[best])
 
 
-def contains(larger: Support, smaller: Support) -> bool:
+def structures() -> tuple[Structure, ...]:
+    """Return the named structures, each with one optional term at most, and friction."""
+    found = []
+    for core in CORES:
+        if not core.required:
+            continue
+        ids = (*core.required, *core.optional[:1], FRICTION)
+        first = TERMS[core.required[0]]
+        shaped = bool(first.parameters) and first.parameters[0].fitted
+        bounds = (first.parameters[0].lower, first.parameters[0].upper) if shaped else None
+        found.append(Structure(core.name, ids, bounds))
+    return tuple(found)
+
+
+def contains(larger: Structure, smaller: Structure) -> bool:
     """Return whether every force of `smaller` is one of `larger` too."""
     return set(smaller.ids) <= set(larger.ids)
-
-
-def nominal_shapes(support: Support) -> tuple[float, ...]:
-    """Return the value that each free shape is given before it is fitted."""
-    return tuple(_NOMINAL_ORDER for _ in support.free)
-
-
-def nominal_force(support: Support, triangle: Triangle, dictionary: Dictionary) -> Array:
-    """Return coefficients (K,) on the dictionary's columns that make a structure's nominal force.
-
-    Each of its terms but friction has an equal part in it, and it is as large as the measured one.
-    """
-    weights = ProfiledFit(triangle, dictionary).at(support, nominal_shapes(support)).weights
-    size = np.linalg.norm(triangle.columns @ weights, axis=0)
-    kept = np.array([i != _FRICTION for i in support.ids]) & (size > 0.0)
-    combined = np.sum(weights[:, kept] / size[kept], axis=1)
-    total = float(np.linalg.norm(triangle.columns @ combined))
-    scale = float(np.linalg.norm(triangle.target)) / total if total > 0.0 else 0.0
-    return np.asarray(scale * combined)
-
-
-def gap_to(force: Array, model: Support, triangle: Triangle, dictionary: Dictionary) -> float:
-    """Return half the squared misfit of `model` to a whitened force (m,), nats."""
-    matrix = np.column_stack([triangle.columns, force])
-    fit = ProfiledFit(replace(triangle, matrix=matrix), dictionary).fit(model)
-    return 0.5 * fit.chi2

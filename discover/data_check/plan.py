@@ -8,48 +8,103 @@ plan can tell is judged without them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.library.dictionary import Dictionary
-from discover.motion_fit import Observation
-from discover.next_test import sine_rows
-from discover.triangle import WindowRows
+from discover.motion_fit.observation import real_rows
+from discover.rows import RecordRows
+from discover.rows.columns import force_columns
+from models.checks import Array
+from models.constitutive import FittedTerm
+from models.motion import sine_motion
+
+_SAMPLES = 128
+_LINES = 8  # of a test that is added
 
 
-def plan_rows(
-    windows: Sequence[WindowRows], observations: Sequence[Observation], dictionary: Dictionary
-) -> tuple[WindowRows, ...]:
-    """Return the windows with those of sine tests as a motion without harmonics would give them.
+@dataclass(frozen=True)
+class SineTest:
+    """A pure sine test, with the noise of its lines."""
 
-    Parameters
-    ----------
-    windows : sequence of WindowRows
-        As measured.
-    observations : sequence of Observation
-        Of the campaign's records.
-    dictionary : Dictionary
-        Of the windows' columns.
+    frequency: float
+    """Hz."""
+    amplitude: float
+    """m."""
+    deviation: Array
+    """(L,) N, standard deviation of the real and of the imaginary part of each line."""
 
-    Returns
-    -------
-    tuple of WindowRows
-        With the measured noise. The force column has its measured size, but not the phase that
-        would go with the columns.
-    """
-    return tuple(
-        _sine(w, dictionary) if observations[w.record].kind == "sine" else w for w in windows
-    )
+    def columns(self, terms: Sequence[FittedTerm]) -> Array:
+        """Return terms' lines over their noise, (2 L, K)."""
+        motion = sine_motion(self.amplitude, self.frequency, samples=_SAMPLES)
+        forces = np.stack([_force(t, motion) for t in terms])
+        lines = np.fft.rfft(forces, axis=-1)[:, : self.deviation.size] * (np.sqrt(2.0) / _SAMPLES)
+        lines[:, 0] /= np.sqrt(2.0)
+        return np.asarray(real_rows(lines / self.deviation).T)
 
 
-def _sine(window: WindowRows, dictionary: Dictionary) -> WindowRows:
-    lines = window.variance.size
-    rows = sine_rows(window.frequency, window.amplitude, dictionary, lines=lines)
-    by_line = rows.reshape(2, lines, -1).swapaxes(0, 1)  # of each, real and imaginary part
-    force = window.matrix[:, -1]
-    return replace(
-        window,
-        matrix=np.column_stack([by_line.reshape(2 * lines, -1), force]),
-        block=np.repeat(np.arange(lines), 2),
-    )
+def _force(fitted: FittedTerm, motion: object) -> Array:
+    column = fitted.term.column
+    if column is None:
+        raise ValueError(f"{fitted.id} adds no force")
+    return column(motion, fitted.shape)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The tests of a plan."""
+
+    sines: tuple[SineTest, ...]
+    """Sine tests."""
+    others: tuple[RecordRows, ...]
+    """Records that are none."""
+    size: float
+    """Length of all measured force over its noise."""
+    noise: float
+    """A line's standard deviation over its record's rms force, the median."""
+
+    def columns(self, terms: Sequence[FittedTerm]) -> Array:
+        """Return terms over the noise in all tests, (R, K)."""
+        parts = [s.columns(terms) for s in self.sines]
+        parts += [force_columns(r, terms).T for r in self.others]
+        return np.concatenate(parts)
+
+    @property
+    def frequency(self) -> Array:
+        """(T,) Hz, of every test or window."""
+        own = [s.frequency for s in self.sines]
+        return np.array([*own, *(w.frequency for r in self.others for w in r.observation.windows)])
+
+    @property
+    def amplitude(self) -> Array:
+        """(T,) m, likewise."""
+        own = [s.amplitude for s in self.sines]
+        return np.array([*own, *(w.amplitude for r in self.others for w in r.observation.windows)])
+
+    @property
+    def records(self) -> int:
+        """Number of records."""
+        return len(self.sines) + len(self.others)
+
+    def with_test(self, frequency: float, amplitude: float, level: float) -> Plan:
+        """Return the plan with one sine test more, its lines' noise `level` N."""
+        test = SineTest(frequency, amplitude, np.full(_LINES, level))
+        return replace(self, sines=(*self.sines, test))
+
+
+def plan_of(rows: Sequence[RecordRows]) -> Plan:
+    """Return the plan of the records that may be fitted."""
+    sines, others, levels = [], [], []
+    size = 0.0
+    for r in rows:
+        o = r.observation
+        for w in o.windows:
+            levels.append(float(np.sqrt(np.median(w.variance) / max(w.power, 1e-300))))
+            size += float(np.sum(np.abs(w.force) ** 2 / w.variance))
+        if o.kind == "sine":
+            deviation = np.sqrt(o.windows[0].variance)
+            most = _SAMPLES // 2
+            sines.append(SineTest(o.frequency, o.amplitude, deviation[:most]))
+        else:
+            others.append(r)
+    return Plan(tuple(sines), tuple(others), float(np.sqrt(size)), float(np.median(levels)))

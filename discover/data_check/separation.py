@@ -13,70 +13,57 @@ from itertools import combinations
 import numpy as np
 
 from discover.data_check.conditioning import joint_rank
-from discover.data_check.nominal import TELLING, contains, gap_to, nominal_force, supports_of
+from discover.data_check.nominal import TELLING, Structure, contains, structures
+from discover.data_check.plan import Plan
 from discover.data_check.result import ExpectedGap, Inseparable, Pair
-from discover.library.dictionary import Dictionary
-from discover.triangle import WindowRows, triangle_of
 
 _SAME_FREQUENCY = 0.02
 
 
-def expected_pairs(windows: Sequence[WindowRows], dictionary: Dictionary) -> tuple[Pair, ...]:
-    """Return every two structures with the gaps that these tests are expected to open.
+def expected_pairs(plan: Plan) -> tuple[Pair, ...]:
+    """Return every two structures with the gaps that these tests are expected to open."""
+    known = structures()
+    forces = {s.name: s.force(plan) for s in known}
 
-    Parameters
-    ----------
-    windows : sequence of WindowRows
-        Of the records that may be fitted.
-    dictionary : Dictionary
-        Of their columns.
-    """
-    triangle = triangle_of(windows)
-    supports = supports_of(dictionary)
-    forces = {
-        name: triangle.columns @ nominal_force(s, triangle, dictionary)
-        for name, s in supports.items()
-    }
-
-    def gap(truth: str, model: str) -> ExpectedGap:
-        nats = gap_to(forces[truth], supports[model], triangle, dictionary)
-        if contains(supports[model], supports[truth]):
-            return ExpectedGap(truth, model, nats, "nested")
-        return ExpectedGap(truth, model, nats, "separable" if nats >= TELLING else "inseparable")
+    def gap(truth: Structure, model: Structure) -> ExpectedGap:
+        nats = model.gap_to(forces[truth.name], plan)
+        if contains(model, truth):
+            return ExpectedGap(truth.name, model.name, nats, "nested")
+        word = "separable" if nats >= TELLING else "inseparable"
+        return ExpectedGap(truth.name, model.name, nats, word)
 
     found = []
-    for first, second in combinations(supports, 2):
+    for first, second in combinations(known, 2):
         gaps = (gap(first, second), gap(second, first))
-        rank, columns = joint_rank((supports[first], supports[second]), triangle, dictionary)
+        rank, columns = joint_rank((first, second), plan)
         # Of two nested structures only the larger one can be told, by what the smaller one lacks.
         separable = all(g.word != "inseparable" for g in gaps)
-        found.append(Pair((first, second), gaps, rank, columns, separable))
+        found.append(Pair((first.name, second.name), gaps, rank, columns, separable))
     return tuple(found)
 
 
-def inseparable_pairs(
-    pairs: Sequence[Pair], windows: Sequence[WindowRows]
-) -> tuple[Inseparable, ...]:
+def inseparable_pairs(pairs: Sequence[Pair], plan: Plan) -> tuple[Inseparable, ...]:
     """Return those of the pairs that the tests can't tell apart at their noise, and why.
 
     Parameters
     ----------
     pairs : sequence of Pair
         From `expected_pairs`.
-    windows : sequence of WindowRows
-        Of the same records.
+    plan : Plan
+        The same.
     """
     return tuple(
-        Inseparable(p.structures, p.nats, _why(p, windows)) for p in pairs if not p.separable
+        Inseparable(p.structures, p.nats, _why(p, plan)) for p in pairs if not p.separable
     )
 
 
-def _why(pair: Pair, windows: Sequence[WindowRows]) -> str:
+def _why(pair: Pair, plan: Plan) -> str:
     first, second = pair.structures
-    count = len({w.record for w in windows})
+    count = plan.records
     records = "the one record that may be fitted" if count == 1 else f"these {count} records"
-    frequencies = np.array([w.frequency for w in windows])
-    if "FOIM" in (first, second) and np.ptp(frequencies) < _SAME_FREQUENCY * frequencies.max():
+    frequencies = plan.frequency
+    shaped = {s.name for s in structures() if s.bounds is not None}
+    if shaped & {first, second} and np.ptp(frequencies) < _SAME_FREQUENCY * frequencies.max():
         return (
             f"at a single frequency ({frequencies.mean():.3g} Hz) a fractional derivative is"
             f" exactly a mixture of velocity and acceleration: {first} and {second} need tests at"

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-
-import numpy as np
+from dataclasses import dataclass, replace
+from itertools import product
 
 from discover.gap.fractional import FOIM_TERMS, FRACTIONAL, fitted_sfoim
-from discover.gap.reversing import reversing_as_sampled
 from discover.motion_fit import Observation
-from discover.naming.fit import ModelFit, fit_model, free_parameters
-from discover.naming.rows import RecordRows, record_rows
+from discover.posterior.assess import Assessed, Assessor
+from discover.posterior.local import judged, local_of
+from discover.posterior.model import Composite, Evaluator, Placed
+from discover.posterior.setup import space_of
+from discover.rows import RecordRows, record_rows
 from models.checks import InputError
-from models.constitutive import FittedTerm, ForceModel, SegmentedModel
+from models.constitutive import Band, FittedTerm, ForceModel, SegmentedModel
+from models.cores import FRICTION
 from models.device import Device
 from models.flow import dean_per_speed
-from models.terms import find_term
+from models.terms import TERMS, Scales, find_term
 
 FIT = "fit:"
-_TRANSITIONS = (0.002, 0.01, 0.05, 0.2)
-_ORDERS = (0.3, 0.7, 1.3, 1.7)
-_EXPONENTS = (1.75,)
+_STARTS = 4  # shapes of each term, from which a fit begins
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,11 @@ class Baseline:
     """A model as the search starts from it."""
 
     rows: tuple[RecordRows, ...]
-    """Of all records, with the terms that are held in each."""
-    model: ForceModel
-    """Terms that are fitted together with each effect; none where all are held."""
+    """Of all records."""
+    assessor: Assessor
+    """Of those that are fitted."""
+    composite: Composite
+    """Its terms in the records that are fitted."""
     whole: SegmentedModel | ForceModel
     """The model as it was given, or fitted."""
     fitted: bool
@@ -42,16 +44,35 @@ class Baseline:
     """Ids of its last terms, where an earlier search added them."""
 
     @property
-    def fitted_rows(self) -> tuple[RecordRows, ...]:
-        """Rows of the records that are not held out."""
-        return tuple(r for r in self.rows if not r.observation.held_out)
-
-    @property
     def terms(self) -> tuple[FittedTerm, ...]:
         """All terms, of all bands."""
         if isinstance(self.whole, ForceModel):
             return self.whole.terms
         return tuple(t for band in self.whole.bands for t in band.model.terms)
+
+    @property
+    def banded(self) -> bool:
+        """True where it has several bands: then its coefficients are held."""
+        return isinstance(self.whole, SegmentedModel) and len(self.whole.bands) > 1
+
+    def given(self) -> list[ForceModel]:
+        """Return the model as it was given, in every record."""
+        if isinstance(self.whole, ForceModel):
+            return [self.whole] * len(self.rows)
+        whole = self.whole
+        return [whole.at(coordinate_of(r.observation, whole)) for r in self.rows]
+
+    def with_terms(self, terms: Sequence[FittedTerm]) -> list[ForceModel]:
+        """Return the model in every record: the baseline's own terms as they are, and others.
+
+        Parameters
+        ----------
+        terms : sequence of FittedTerm
+            All that is not held; where nothing is, the whole model.
+        """
+        if not self.fixed and not self.banded:
+            return [ForceModel(tuple(terms))] * len(self.rows)
+        return [ForceModel((*m.terms, *terms), m.name) for m in self.given()]
 
 
 def term_ids(text: str, *, where: str = "--model") -> tuple[str, ...]:
@@ -87,28 +108,45 @@ def term_ids(text: str, *, where: str = "--model") -> tuple[str, ...]:
     return ids
 
 
-def fit_terms(rows: Sequence[RecordRows], ids: Sequence[str]) -> ModelFit:
-    """Return the terms fitted to records, the best of a few first guesses of their shapes."""
-    speed = max(float(np.abs(r.observation.motion.velocity).max()) for r in rows)
-    starts: list[dict[str, dict[str, float]]] = [{}]
-    for name, key, grid in (
-        ("coulomb-friction", "transition_speed", [s * speed for s in _TRANSITIONS]),
-        ("fractional-derivative", "order", list(_ORDERS)),
-        ("power-law-damping", "exponent", list(_EXPONENTS)),
-        ("stribeck-friction", "stribeck_velocity", [0.05 * speed]),
-    ):
-        if name in ids:
-            starts = [{**s, name: {key: float(value)}} for s in starts for value in grid]
-    best: ModelFit | None = None
-    for start in starts:
-        model = ForceModel(tuple(FittedTerm(i, 1.0, start.get(i, {})) for i in ids))
-        linear = [p for p in free_parameters(model) if p.shape is None]
-        found = fit_model(rows, model, linear, iterations=1)
-        if best is None or found.chi2 < best.chi2:
-            best = found
+def assessor_of(rows: Sequence[RecordRows]) -> Assessor:
+    """Return what assesses models of records, whose friction reverses over a speed."""
+    space, curve = space_of(rows, TERMS[FRICTION])
+    return Assessor(space, Evaluator(space.sheet, space.scales), curve, path=False)
+
+
+def fit_terms(assessor: Assessor, ids: Sequence[str]) -> Assessed:
+    """Return terms fitted to records, from the best of a few shapes of each."""
+    space = assessor.space
+    starts = [_shapes(i, space.scales) for i in ids]
+    best, most = None, float("-inf")
+    for shapes in product(*starts):
+        terms = tuple(
+            FittedTerm(i, 1.0, dict(shape)) for i, shape in zip(ids, shapes, strict=True)
+        )
+        model = Composite.of(ForceModel(terms))
+        local = local_of(space, assessor.evaluator, model)
+        sizes = space.start.sizes(space.own_unit)
+        value = judged(space, local, sizes, assessor.curve_of(model)).value
+        if value > most:
+            best, most = model, value
     if best is None:
         raise InputError("terms", expected="at least one", found="none")
-    return reversing_as_sampled(rows, fit_model(rows, best.model, free_parameters(best.model)))
+    return assessor.assess(best, space.start)
+
+
+def _shapes(identifier: str, scales: Scales) -> list[dict[str, float]]:
+    """Return shapes of a term to start from, of which a fit may change every parameter."""
+    term = TERMS[identifier]
+    if not term.parameters or term.starts is None:
+        return [{}]
+    found = [
+        dict(s.shapes[0]) for s in term.starts(scales)
+        if len(s.shapes) == 1 and term.remembers(term.shape(s.shapes[0])) == "motion"
+    ]
+    if not found:
+        return [{}]
+    step = max(len(found) // _STARTS, 1)
+    return found[step // 2 :: step] or found[:1]
 
 
 def prepare_baseline(
@@ -138,33 +176,48 @@ def prepare_baseline(
     InputError
         For terms that are not in the vocabulary.
     """
-    fitted_first = model == "sfoim"
+    rows = tuple(record_rows(o) for o in observations)
+    free_rows = [r for r in rows if not r.observation.held_out]
+    first = model == "sfoim"
     if model == "sfoim":
-        model = fitted_sfoim(
-            observations, device, along=_coordinate,
-            fit=lambda rows: fit_terms(rows, FOIM_TERMS).model,
-        )  # fmt: skip
+        model = fitted_sfoim(rows, device, along=coordinate_of, fit=_fitted)
+    assessor = assessor_of(free_rows)
     if isinstance(model, str):
-        rows = [record_rows(o) for o in observations]
-        fitted = fit_terms([r for r in rows if not r.observation.held_out], term_ids(model)).model
-        if not fixed:
-            return Baseline(tuple(rows), fitted, fitted, fitted=True, fixed=False)
-        held = tuple(record_rows(o, held=fitted.terms) for o in observations)
-        return Baseline(held, ForceModel(()), fitted, fitted=True, fixed=True)
+        found = fit_terms(assessor, term_ids(model))
+        whole = found.model.in_unit(0)
+        composite = Composite.of(whole, held=fixed)
+        return Baseline(rows, assessor, composite, whole, fitted=True, fixed=fixed)
     added = model.added if isinstance(model, SegmentedModel) else ()
     if isinstance(model, SegmentedModel) and len(model.bands) == 1:
         model = ForceModel(model.bands[0].model.terms, model.name)
     if isinstance(model, ForceModel):
-        terms = model.terms if fixed else ()
-        rows = [record_rows(o, held=terms) for o in observations]
-        free = ForceModel(()) if fixed else model
-        return Baseline(tuple(rows), free, model, fitted=False, fixed=fixed, added=added)
-    rows = [record_rows(o, held=model.at(_coordinate(o, model)).terms) for o in observations]
-    free = ForceModel(())
-    return Baseline(tuple(rows), free, model, fitted=fitted_first, fixed=True, added=added)
+        composite = Composite.of(model, held=fixed)
+        return Baseline(
+            rows, assessor, composite, model, fitted=False, fixed=fixed, added=added
+        )
+    composite = _by_bands(assessor, free_rows, model)
+    return Baseline(rows, assessor, composite, model, fitted=first, fixed=True, added=added)
 
 
-def _coordinate(observation: Observation, model: SegmentedModel) -> float:
+def _fitted(rows: Sequence[RecordRows]) -> ForceModel:
+    return fit_terms(assessor_of(rows), FOIM_TERMS).model.in_unit(0)
+
+
+def _by_bands(
+    assessor: Assessor, rows: Sequence[RecordRows], model: SegmentedModel
+) -> Composite:
+    """Return a model by bands, held, each band's terms in its records."""
+    bands = [model.at(coordinate_of(r.observation, model)) for r in rows]
+    units = assessor.space.sheet.units
+    placed = []
+    for band in model.bands:
+        share = tuple(float(bands[u.record] is band.model) for u in units)
+        placed += [Placed(t, share, held=True) for t in band.model.terms]
+    return Composite(tuple(placed))
+
+
+def coordinate_of(observation: Observation, model: SegmentedModel) -> float:
+    """Return where a record lies along a model's bands."""
     if model.coordinate == "frequency":
         return observation.frequency
     if model.coordinate == "speed":
@@ -172,3 +225,15 @@ def _coordinate(observation: Observation, model: SegmentedModel) -> float:
     if model.device is None:
         raise InputError("device", expected="given for bands of the Dean number", found="none")
     return observation.speed * dean_per_speed(model.device, convention=model.convention)
+
+
+def added_to(whole: SegmentedModel, terms: Sequence[FittedTerm]) -> SegmentedModel:
+    """Return a model by bands with the same terms added in each."""
+    bands = tuple(
+        Band(b.lower, b.upper, ForceModel((*b.model.terms, *terms), b.model.name))
+        for b in whole.bands
+    )
+    return replace(whole, bands=bands, added=(*whole.added, *(t.id for t in terms)))
+
+
+__all__ = ["FIT", "Baseline", "added_to", "prepare_baseline", "term_ids"]

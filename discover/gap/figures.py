@@ -3,43 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from discover.figure_data import EffectShape, GapCurves
-from discover.gap.accuracy import Misfit
-from discover.gap.rounds import Round
-from discover.gap.stages import without
-from discover.naming.forces import model_force, needs_cycle
-from discover.naming.rows import RecordRows
-from discover.naming.unit_rows import whole_model
+from discover.gap.result import NamedEffect
+from discover.rows import Accuracy, RecordRows, force_at_samples
 from models.checks import Array
-from models.constitutive import FittedTerm, ForceModel, SegmentedModel
-from models.terms import Term
+from models.constitutive import FittedTerm, ForceModel
+from models.terms import TERMS
 
 _POINTS = 600
 _SHOWN = 400
 _CYCLES = 2.0
-_FOLLOWS = {
-    "inertia": "acceleration",
-    "stiffness": "displacement",
-    "cubic-stiffness": "displacement",
-    "end-stop": "displacement",
-    "hysteresis": "displacement",
-    "backlash": "displacement",
-    "position-dependent-friction": "displacement",
-    "sensor-drift": "time",
-    "thermal-drift": "time",
-}
 _UNITS = {"velocity": "m/s", "displacement": "m", "acceleration": "m/s^2", "time": "s"}
-_LOOPS = ("time-delay", "series-compliance", "sensor-gain", "sensor-clipping", "cavitation",
-          "fractional-derivative", "backlash")
+_SCATTERS = 4.0  # times its range, that a force varies by along what it does not follow
 
 
-def curves(rows: RecordRows, before: Array, after: Array, was: Misfit, now: Misfit) -> GapCurves:
-    """Return a record's curves, decimated; `before` and `after` are on the motion's grid."""
-    o = rows.observation
+def curves(was: Accuracy, now: Accuracy) -> GapCurves:
+    """Return a record's curves, decimated: measured, and the model before and after."""
+    o = now.observation
     sine = o.kind == "sine"
     stop = o.time.size
     if sine:
@@ -55,89 +38,76 @@ def curves(rows: RecordRows, before: Array, after: Array, was: Misfit, now: Misf
         displacement=o.at_samples(o.motion.displacement)[chosen],
         velocity=o.at_samples(o.motion.velocity)[chosen],
         force=o.measured[chosen],
-        before=o.at_samples(before)[chosen],
-        after=o.at_samples(after)[chosen],
+        before=was.model_force[chosen],
+        after=now.model_force[chosen],
         noise_percent=now.noise_percent,
-        gap_before_percent=was.percent,
-        gap_after_percent=now.percent,
+        gap_before_percent=was.relative_percent,
+        gap_after_percent=now.relative_percent,
     )
 
 
 def shape_of(
-    rows: Sequence[RecordRows], entry: Round, number: int, relative_error: float
+    rows: Sequence[RecordRows], models: Sequence[ForceModel], named: NamedEffect, number: int
 ) -> EffectShape:
     """Return the effect's force in the record where it is greatest, over what it follows.
 
     Parameters
     ----------
     rows : sequence of RecordRows
-        Fitted records.
-    entry : Round
-        The round.
+        All records.
+    models : sequence of ForceModel
+        With the effect, in each.
+    named : NamedEffect
+        The round as it is stated.
     number : int
         Its index.
-    relative_error : float
-        Standard error of the coefficient over the coefficient.
     """
-    model = entry.after.fit.model
-    rest = without(model, entry.effect)
-
-    def change(r: RecordRows) -> Array:
-        o = r.observation
-        return model_force(o, whole_model(r, model)) - model_force(o, whole_model(r, rest))
-
-    sizes = [
-        float(np.std(change(r))) / max(float(np.std(r.observation.measured)), 1e-300) for r in rows
-    ]
-    r = rows[int(np.argmax(sizes))]
-    o = r.observation
+    best, added, rest = rows[0], np.zeros(0), np.zeros(0)
+    most = -1.0
+    for r, model in zip(rows, models, strict=True):
+        if r.observation.held_out:
+            continue
+        without = ForceModel(tuple(t for t in model.terms if t.id != named.effect))
+        lacking = force_at_samples(r.observation, without)
+        change = force_at_samples(r.observation, model) - lacking
+        size = float(np.std(change)) / max(float(np.std(r.observation.measured)), 1e-300)
+        if size > most:
+            most, best, added, rest = size, r, change, lacking
+    o = best.observation
     sources = {
-        "velocity": o.motion.velocity,
-        "displacement": o.motion.displacement,
-        "acceleration": o.motion.acceleration,
-        "time": o.motion.time - o.motion.time[0],
+        "velocity": o.at_samples(o.motion.velocity),
+        "displacement": o.at_samples(o.motion.displacement),
+        "acceleration": o.at_samples(o.motion.acceleration),
+        "time": o.time - o.time[0],
     }
-    added = change(r)
-    abscissa = _FOLLOWS.get(entry.effect, "velocity")
-    term = next((t.term for t in model.terms if t.id == entry.effect), None)
-    if term is not None and term.source is not None:
-        abscissa = _followed(term, sources, added)
-    unit = _UNITS[abscissa]
-    along, force = o.at_samples(sources[abscissa]), o.at_samples(added)
-    left = o.measured - o.at_samples(model_force(o, whole_model(r, rest)))
+    fitted = FittedTerm(named.effect, named.coefficient, named.parameters)
+    abscissa = _followed(fitted, sources, added)
+    along = sources[abscissa]
     stop = along.size
     if o.kind == "sine" and abscissa != "time":
         step = float((o.time[-1] - o.time[0]) / (o.time.size - 1))
         stop = min(stop, int(np.ceil(1.0 / (o.frequency * step))) + 1)
     chosen = np.unique(np.linspace(0, stop - 1, min(_SHOWN, stop)).astype(int))
-    looped = any(needs_cycle(t.term, t.shape) for t in model.terms if t.id == entry.effect)
-    if abscissa == "velocity" and entry.effect not in _LOOPS and not looped:
-        chosen = chosen[np.argsort(along[chosen], kind="stable")]
-    band = 1.96 * relative_error * np.abs(force[chosen])
+    order = np.argsort(along[chosen], kind="stable")
+    varies = float(np.abs(np.diff(added[chosen][order])).sum())
+    if varies < _SCATTERS * max(float(np.ptp(added[chosen])), 1e-300):
+        chosen = chosen[order]
+    half = 0.5 * (named.interval[1] - named.interval[0])
+    relative = half / abs(named.coefficient) if named.coefficient else 0.0
+    band = relative * np.abs(added[chosen])
     return EffectShape(
-        number, entry.effect, abscissa, unit, along[chosen], force[chosen],
-        force[chosen] - band, force[chosen] + band, along[chosen], left[chosen],
+        number, named.effect, abscissa, _UNITS[abscissa], along[chosen], added[chosen],
+        added[chosen] - band, added[chosen] + band, along[chosen], (o.measured - rest)[chosen],
     )
 
 
-def _followed(term: Term, sources: Mapping[str, Array], force: Array) -> str:
-    """Return what a user's effect is best drawn over: that along which its force varies least."""
-    if term.follows == "time":
-        return "time"
-    if term.follows == "path":
-        return "displacement"
+def _followed(fitted: FittedTerm, sources: Mapping[str, Array], force: Array) -> str:
+    """Return what an effect is best drawn over: that along which its force varies least."""
+    follows = TERMS[fitted.id].remembers(fitted.shape)
+    if follows != "motion":
+        return "time" if follows == "time" else "displacement"
 
     def variation(name: str) -> float:
         return float(np.abs(np.diff(force[np.argsort(sources[name], kind="stable")])).sum())
 
     return min(("velocity", "displacement", "acceleration"), key=variation)
-
-
-def added_to(whole: SegmentedModel, terms: Sequence[FittedTerm]) -> SegmentedModel:
-    """Return a model by bands with the same terms added in each."""
-    bands = tuple(
-        type(b)(b.lower, b.upper, ForceModel((*b.model.terms, *terms), b.model.name))
-        for b in whole.bands
-    )
-    added = (*whole.added, *(t.id for t in terms))
-    return replace(whole, bands=bands, added=added)

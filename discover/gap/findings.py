@@ -6,17 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from discover.gap.accuracy import sample_misfit
 from discover.gap.baseline import Baseline
 from discover.gap.result import CLOSED, NamedEffect
-from discover.gap.search import Search
-from discover.gap.stages import Stage, seen_gap
-from discover.naming.evidence import AGREES, FEW, UNKNOWN
-from discover.naming.forces import model_force
-from discover.naming.rows import RecordRows
-from discover.naming.unit_rows import whole_model
+from discover.gap.search import Search, Stage
+from discover.motion_fit import Observation
+from discover.posterior.local import judged
 from discover.records import Finding
-from models.constitutive import ForceModel
+from models.terms.between_tests import ONLY
 
 _WORSE = 1.02  # of a gap that was not fitted, from which a round is said to raise it
 _NOISY = 20.0  # percent of a record's force
@@ -24,10 +20,6 @@ _SINGLE = 0.01  # of a record's samples
 _MOST = 0.5  # of what is left
 _NOT_MET = 1.5  # times the noise, and what fitted records are off by
 _FURTHER = 1.02  # of the fitted records' range
-_OWN = (
-    ("sensor-drift", "The force channel's zero", "zero the channel before each test"),
-    ("time-delay", "The delay between the channels", "start both by one trigger, on one clock"),
-)
 _NOT_THE_LINES = 1.5  # times the noise, from which a gap is not what the tests' lines show
 
 
@@ -60,8 +52,8 @@ def findings_of(
                     r.observation.file,
                 )
             )
-    if found.refitted is not found.baseline:
-        gaps = seen_gap(baseline.rows, found.baseline), seen_gap(baseline.rows, found.refitted)
+    gaps = found.given.gap, found.refitted.gap
+    if not baseline.fixed and not baseline.fitted and gaps[1] < 0.98 * gaps[0]:
         result.append(
             Finding(
                 "note",
@@ -69,14 +61,13 @@ def findings_of(
                 f" to {gaps[1]:.3g} %; the rounds start from there. --fixed holds them.",
             )
         )
+    result += _wrong_signs(baseline, found.refitted)
     if found.rejected is not None:
         result.append(
             Finding(
                 "warning",
-                f"{found.rejected} would lower the misfit in terms of the records' noise, but not"
-                " the gap in force, or that only of records that it is fitted to, and is not added:"
-                " the noise differs much between records, or the model is wrong in more than one"
-                " way.",
+                f"{found.rejected} would make the fitted records more probable but predicts those"
+                " that were not fitted worse, and is not added.",
             )
         )
     for entry in found.rounds:
@@ -85,14 +76,12 @@ def findings_of(
                 Finding("note", f"{name}, named in an earlier round, was made superfluous by"
                         f" {entry.effect} and dropped.")
             )
-    result += _doubts(baseline, rounds)
-    result += _noisy(baseline.rows, found.final)
-    result += _spikes(baseline.rows, found.final, noise)
-    result += _not_met(baseline.rows, found.final, noise)
-    ended = found.last.ranked[0]
-    over = seen_gap(baseline.rows, found.final) / max(noise, 1e-300)
-    by_shapes = found.last.tolerated > 0.0
-    if ended[0] == AGREES and not found.rounds and not by_shapes and over > _NOT_THE_LINES:
+    result += _doubts(rounds)
+    result += _noisy(found.final)
+    result += _spikes(found.final, noise)
+    result += _not_met(found.final, noise)
+    over = found.final.gap / max(noise, 1e-300)
+    if not found.rounds and found.final.assessed.quiet and over > _NOT_THE_LINES:
         result.append(
             Finding(
                 "warning",
@@ -101,31 +90,49 @@ def findings_of(
                 " Look at the force's spectrum.",
             )
         )
-    if ended[0] == AGREES and by_shapes:
-        result.append(
-            Finding(
-                "note",
-                "What is left is no more than noise and what the formulas of the added effects may"
-                " differ from the real ones by: no further effect is sought in it.",
-            )
-        )
-    if ended[0] == UNKNOWN:
-        chance = "over 0.99" if ended[1] > 0.99 else f"{ended[1]:.2f}"
+    if not found.final.assessed.quiet:
         result.append(
             Finding(
                 "warning",
-                "What is left is more than noise, and none of the effects that were tried explains"
-                f" it (probability {chance} that it is none of them).",
+                "What is left is more than noise, and no further effect of those that were tried"
+                " helps more than a smooth remainder does.",
             )
         )
     return tuple(result)
 
 
-def _doubts(baseline: Baseline, rounds: Sequence[NamedEffect]) -> list[Finding]:
+def _wrong_signs(baseline: Baseline, at: Stage) -> list[Finding]:
+    """Return which of the model's coefficients the records would have below zero."""
+    space = baseline.assessor.space
+    local, place = at.assessed.local, at.assessed.place
+    curve = baseline.assessor.curve_of(local.model)
+    solved = judged(space, local, place.sizes(space.own_unit), curve).solved
+    deviation = np.sqrt(np.maximum(np.diagonal(solved.covariance), 0.0))
+    result = []
+    for i, n in enumerate(local.numbers):
+        fitted = local.model.terms[n.term].fitted
+        wrong = local.sign[i] * solved.mean[i] < -2.0 * deviation[i]
+        if n.shape is None and local.sign[i] and wrong:
+            stores = fitted.term.derivative == 2.0
+            why = (
+                "the device stores energy like a spring here: presliding, stiffness or a lag"
+                if stores else "another term is missing that the records have in its place"
+            )
+            result.append(
+                Finding(
+                    "warning",
+                    f"{fitted.id} would come out as {solved.mean[i]:.3g} {fitted.unit}, which it"
+                    f" can't be, and is held at its limit: {why}.",
+                )
+            )
+    return result
+
+
+def _doubts(rounds: Sequence[NamedEffect]) -> list[Finding]:
     """Return what speaks against relying on a round, though its effect lowers the misfit."""
     result = []
     for entry in rounds:
-        if entry.parameters.get("only"):
+        if entry.parameters.get(ONLY.name):
             continue  # it is said apart what values of every test's own tell
         raised = _raised(entry)
         if raised is not None:
@@ -138,15 +145,14 @@ def _doubts(baseline: Baseline, rounds: Sequence[NamedEffect]) -> list[Finding]:
                     " beside it, or its own shape, make up for another one.",
                 )
             )
-    fitted = sum(not r.observation.held_out for r in baseline.rows)
-    if rounds and fitted < FEW:
-        result.append(
-            Finding(
-                "warning",
-                f"Fewer than {FEW} records were fitted: a wrong shape can't be told from a second"
-                " small effect, and the nearest entry is named.",
+        if not entry.shape_adequate:
+            result.append(
+                Finding(
+                    "note",
+                    f"{entry.effect} explains {entry.share_percent:.0f} % of the misfit, but its"
+                    " formula leaves more than noise: it is what helps most, not the whole.",
+                )
             )
-        )
     return result
 
 
@@ -172,13 +178,9 @@ def _raised(entry: NamedEffect) -> str | None:
     return None
 
 
-def _noisy(rows: Sequence[RecordRows], at: Stage) -> list[Finding]:
+def _noisy(at: Stage) -> list[Finding]:
     """Return what can't be judged because the force does not repeat."""
-    levels = [
-        m.noise_percent
-        for r, m in zip(rows, at.misfits, strict=True)
-        if not r.observation.held_out
-    ]
+    levels = [a.noise_percent for a in at.seen]
     count = sum(level > _NOISY for level in levels)
     if not count:
         return []
@@ -193,22 +195,19 @@ def _noisy(rows: Sequence[RecordRows], at: Stage) -> list[Finding]:
     ]
 
 
-def _spikes(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding]:
+def _spikes(at: Stage, noise: float) -> list[Finding]:
     """Return that most of what is left is in single samples, where it is."""
-    if seen_gap(rows, at) <= CLOSED * noise:
+    if at.gap <= CLOSED * noise:
         return []
-    sines = [r for r in rows if not r.observation.held_out and r.observation.kind == "sine"]
-    left = [
-        sample_misfit(r.observation, model_force(r.observation, whole_model(r, at.fit.model))) ** 2
-        for r in sines
-    ]
+    sines = [a for a in at.seen if a.observation.kind == "sine"]
+    left = [(a.observation.measured - a.model_force) ** 2 for a in sines]
     if not left:
         return []
     most = sum(float(np.sort(s)[-max(1, round(_SINGLE * s.size)) :].sum()) for s in left)
     share = most / max(sum(float(s.sum()) for s in left), 1e-300)
     if share < _MOST:
         return []
-    slowest = min(1.0 / r.observation.motion.step for r in sines)
+    slowest = min(1.0 / a.observation.motion.step for a in sines)
     return [
         Finding(
             "warning",
@@ -219,69 +218,67 @@ def _spikes(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding
     ]
 
 
-def _not_met(rows: Sequence[RecordRows], at: Stage, noise: float) -> list[Finding]:
+def _not_met(at: Stage, noise: float) -> list[Finding]:
     """Return which records that were not fitted are met worse than those that were."""
-    of_each = _of_every_test(at.fit.model)
+    of_each = _of_every_test(at)
     if of_each:
         return of_each
-    marked = [r for r in rows if r.observation.held_out]
-    seen = [r for r in rows if not r.observation.held_out]
-    met = seen_gap(rows, at) / max(noise, 1e-300)
+    marked = any(a.observation.held_out for a in at.unseen)
+    met = at.gap / max(noise, 1e-300)
+    fitted = {a.observation.file: a.relative_percent for a in at.accuracies}
     off = []
-    for r, m, own in zip(marked or rows, at.unseen, at.misfits, strict=False):
-        usual = met * m.noise_percent if marked else own.percent
-        if m.noise_percent > 0.0 and m.percent > _NOT_MET * max(usual, m.noise_percent):
-            off.append((m.percent / m.noise_percent, r, m))
+    for a in at.unseen:
+        usual = met * a.noise_percent if marked else fitted[a.observation.file]
+        if a.noise_percent > 0.0 and a.relative_percent > _NOT_MET * max(usual, a.noise_percent):
+            off.append(a)
     if not off:
         return []
-    _, worst, m = max(off, key=lambda o: o[0])
+    worst = max(off, key=lambda a: a.relative_percent / a.noise_percent)
     count, verb = f"{len(off)} of {len(at.unseen)} records", "is" if len(off) == 1 else "are"
+    percent = f"{worst.relative_percent:.3g} % (noise {worst.noise_percent:.3g} %)"
     if not marked:
         return [
             Finding(
                 "warning",
                 f"{count} {verb} predicted worse when left out than when fitted, this one to"
-                f" {m.percent:.3g} % (noise {m.noise_percent:.3g} %): what the model says there is"
-                " known from it alone. Test near it again.",
+                f" {percent}: what the model says there is known from it alone. Test near it"
+                " again.",
                 worst.observation.file,
             )
         ]
-    beyond = _beyond_fitted(worst, seen)
+    beyond = _beyond_fitted(worst.observation, [a.observation for a in at.seen])
     return [
         Finding(
             "warning",
             f"{count} that are held out {verb} met worse than the fitted ones, this one to"
-            f" {m.percent:.3g} % (noise {m.noise_percent:.3g} %)"
-            + (f"; it goes beyond them in {beyond}" if beyond else "")
+            f" {percent}" + (f"; it goes beyond them in {beyond}" if beyond else "")
             + ". What only it shows is not searched for: drop its mark, or test there again.",
             worst.observation.file,
         )
     ]
 
 
-def _of_every_test(model: ForceModel) -> list[Finding]:
+def _of_every_test(at: Stage) -> list[Finding]:
     """Return what is another one in every test, and so is not known of others."""
     result = []
-    for effect, what, remedy in _OWN:
-        terms = [t for t in model.terms if t.id == effect and t.shape["only"] > 0.0]
-        terms = [t for t in terms if t.shape.get("over", 1.0) > 0.0]  # of a drift the zeros
-        if terms:
-            values = [t.coefficient for t in terms]
-            result.append(
-                Finding(
-                    "warning",
-                    f"{what} is another one in every test (from {min(values):.3g} to"
-                    f" {max(values):.3g} {terms[0].unit}). No model predicts it, and records that"
-                    f" were not fitted are met with the others' mean: {remedy}.",
-                )
+    own: dict[str, list[float]] = {}
+    for t in at.terms:
+        if t.shape.get(ONLY.name, 0.0) > 0.0:
+            own.setdefault(t.id, []).append(t.coefficient)
+    for name, values in own.items():
+        result.append(
+            Finding(
+                "warning",
+                f"{name} is another one in every test (from {min(values):.3g} to"
+                f" {max(values):.3g}). No model predicts it, and records that were not fitted are"
+                " met with the others' mean: find what sets it, and hold that still.",
             )
+        )
     return result
 
 
-def _beyond_fitted(unseen: RecordRows, seen: Sequence[RecordRows]) -> str:
+def _beyond_fitted(own: Observation, others: Sequence[Observation]) -> str:
     """Return in what a record goes beyond the fitted ones, in words; "" where in nothing."""
-    own = unseen.observation
-    others = [r.observation for r in seen]
     parts = []
     for name, unit, value, known in (
         ("amplitude", "mm", 1e3 * own.amplitude, [1e3 * o.amplitude for o in others]),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from discover.motion_fit import Observation
-from discover.naming.rows import RecordRows, record_rows
+from discover.rows import RecordRows
 from models.checks import InputError
 from models.constitutive import Band, ForceModel, SegmentedModel
 from models.device import Device
@@ -19,7 +19,7 @@ Along = Callable[[Observation, SegmentedModel], float]
 
 
 def fitted_sfoim(
-    observations: Sequence[Observation], device: Device | None, *, fit: Fit, along: Along
+    rows: Sequence[RecordRows], device: Device | None, *, fit: Fit, along: Along
 ) -> SegmentedModel:
     """Return the segmented fractional model, each band fitted to its own records.
 
@@ -27,7 +27,7 @@ def fitted_sfoim(
 
     Parameters
     ----------
-    observations : sequence of Observation
+    rows : sequence of RecordRows
         Of all records; those held out are not fitted.
     device : Device or None
         Gives the Dean number (the paper's convention); the bands part at 100.
@@ -47,16 +47,16 @@ def fitted_sfoim(
     nothing = ForceModel(())
     bands = (Band(None, _DEAN, nothing), Band(_DEAN, None, nothing))
     empty = SegmentedModel(bands, "dean", "paper", device, "SFOIM")
-    fitted = [o for o in observations if not o.held_out]
-    below = [o for o in fitted if along(o, empty) < _DEAN]
-    above = [o for o in fitted if along(o, empty) >= _DEAN]
+    fitted = [r for r in rows if not r.observation.held_out]
+    below = [r for r in fitted if along(r.observation, empty) < _DEAN]
+    above = [r for r in fitted if along(r.observation, empty) >= _DEAN]
     if not below or not above:
         raise InputError(
             "records that may be fitted", expected=f"on both sides of De {_DEAN:g} for sfoim",
             found=f"all {'above' if above else 'below'}", where=device.name,
         )  # fmt: skip
     models = [
-        ForceModel(fit([record_rows(o) for o in side]).terms, "FOIM") for side in (below, above)
+        ForceModel(fit(side).terms, "FOIM") for side in (below, above)
     ]
     for model, side, name in zip(models, (below, above), ("below", "above"), strict=True):
         if model.coefficient(FOIM_TERMS[0]) <= 0.0:

@@ -7,9 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from discover.gap.where import Place, misfit_at_samples, phase_means
-from discover.naming.forces import model_force
-from discover.naming.rows import RecordRows
-from discover.naming.unit_rows import whole_model
+from discover.rows import RecordRows
 from models.checks import Array
 from models.constitutive import ForceModel
 
@@ -21,7 +19,7 @@ _MAJOR = 0.15  # of the energy, from which a harmonic is listed
 
 
 def leftover_in_words(
-    rows: Sequence[RecordRows], found: Sequence[Place], model: ForceModel
+    rows: Sequence[RecordRows], found: Sequence[Place], models: Sequence[ForceModel]
 ) -> str:
     """Return the shape of the misfit in sine tests where it stands above the noise.
 
@@ -31,32 +29,31 @@ def leftover_in_words(
         All records.
     found : sequence of Place
         `where.places` of the same records.
-    model : ForceModel
-        What leaves the misfit.
+    models : sequence of ForceModel
+        What leaves the misfit in each.
 
     Returns
     -------
     str
         "" where no sine test shows it.
     """
-    shown = [
-        r
-        for r, p in zip(rows, found, strict=True)
+    pairs = [
+        (r, m)
+        for r, p, m in zip(rows, found, models, strict=True)
         if p.significant and r.observation.kind == "sine"
     ]
-    if not shown:
+    if not pairs:
         return ""
-    lines = [_lines(r, model) for r in shown]
+    shown = [r for r, _ in pairs]
+    lines = [_lines(r, m) for r, m in pairs]
     energies = [_above_noise(r, own) for r, own in zip(shown, lines, strict=True)]
     parts = [_symmetry(energies), _phase(shown, lines), _growth(shown, energies)]
-    return "; ".join(p for p in (*parts, _memory(shown, model)) if p)
+    return "; ".join(p for p in (*parts, _memory(pairs)) if p)
 
 
 def _lines(rows: RecordRows, model: ForceModel) -> Array:
     """Return the misfit's lines (H,), N, less the mean; real parts are in phase with velocity."""
-    window = rows.observation.windows[0]
-    force = model_force(rows.observation, whole_model(rows, model))
-    return np.asarray((window.force - window.project(force))[1:])
+    return np.asarray(rows.observation.windows[0].project(misfit_at_samples(rows, model))[1:])
 
 
 def _above_noise(rows: RecordRows, lines: Array) -> Array:
@@ -111,15 +108,16 @@ def _growth(rows: Sequence[RecordRows], energies: Sequence[Array]) -> str:
     return f"its size grows as {powers}"
 
 
-def _memory(rows: Sequence[RecordRows], model: ForceModel) -> str:
+def _memory(pairs: Sequence[tuple[RecordRows, ForceModel]]) -> str:
     """Return whether one function of displacement and velocity makes it in all tests."""
+    rows = [r for r, _ in pairs]
     if len(rows) < _FEWEST:
         return ""
     top = max(r.observation.windows[0].amplitude for r in rows)
     pace = max(r.observation.windows[0].speed for r in rows)
     blocks, targets = [], []
     powers = [(i, j) for i in range(_DEGREE + 1) for j in range(_DEGREE + 1 - i)]
-    for r in rows:
+    for r, model in pairs:
         o = r.observation
         x, v, mean = (
             phase_means(o, c)[0]

@@ -9,34 +9,12 @@ from discover.figure_data import GapFigureData
 from discover.gap.where import Place
 from discover.header import document_header
 from discover.records import Finding
+from discover.rows import Unexplained
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 
 Interval = tuple[float, float]
 CLOSED = 1.15
 """Times the noise floor, up to which a gap is closed to it."""
-
-
-@dataclass(frozen=True)
-class CorrectedCurve:
-    """Curves of added effects that their formulas do not follow."""
-
-    effects: tuple[str, ...]
-    """Whose: once for each term that was added to it."""
-    gap: float
-    """Percent by the formulas alone, fitted records."""
-    unseen: float | None
-    """Likewise, on records that were not fitted."""
-    reversal: bool = False
-    """Whether friction has come to reverse along a curve of its own."""
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the document's entry."""
-        return {
-            "effects": list(self.effects),
-            "reversal": self.reversal,
-            "gap_by_formula_percent": self.gap,
-            "held_out_by_formula_percent": self.unseen,
-        }
 
 
 @dataclass(frozen=True)
@@ -67,12 +45,15 @@ class NamedEffect:
     """Likewise, on records that were not fitted; None where there is one record only."""
     dropped: tuple[str, ...]
     """Earlier effects that it made superfluous."""
-    corrected: CorrectedCurve | None = None
-    """Where `gap` after it is not by the formula."""
+    share_percent: float
+    """Of the misfit beyond noise, that the effect explains."""
+    shape_adequate: bool
+    """Whether its formula leaves little beside what it explains."""
+    held_out_better: bool | None
+    """Whether records that were not fitted are predicted better; None where there are none."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document's entry."""
-        corrected = {} if self.corrected is None else {"corrected": self.corrected.to_dict()}
         return {
             "effect": self.effect,
             "parameters": self.parameters,
@@ -89,7 +70,9 @@ class NamedEffect:
             "held_out_before_percent": self.unseen[0],
             "held_out_after_percent": self.unseen[1],
             "dropped": list(self.dropped),
-            **corrected,
+            "share_percent": self.share_percent,
+            "shape_adequate": self.shape_adequate,
+            "held_out_better": self.held_out_better,
         }
 
 
@@ -143,7 +126,7 @@ class Gap:
     content_hash: str
     """The campaign's."""
     seed: int
-    """As asked; the search itself draws nothing."""
+    """As asked; nothing in the search is random."""
     baseline: tuple[FittedTerm, ...]
     """The model's terms as it was held against the data."""
     fitted: bool
@@ -174,6 +157,8 @@ class Gap:
     """After."""
     unexplained_percent: float
     """What is left above the noise."""
+    remainder: Unexplained
+    """What no term explains, as rows show it."""
     shape: str
     """What is left, in words; "" where nothing is."""
     last: tuple[tuple[str, float], ...]
@@ -216,6 +201,7 @@ class Gap:
             "final_gap_percent": self.final_gap_percent,
             "final_held_out_gap_percent": self.final_held_out_gap_percent,
             "unexplained_percent": self.unexplained_percent,
+            "remainder_percent": self.remainder.to_dict(),
             "contest": [{"effect": e, "probability": p} for e, p in self.last],
             "findings": [f.to_dict() for f in self.findings],
         }

@@ -8,41 +8,30 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from discover.figure_data import GapFigureData
-from discover.gap.accuracy import pooled
-from discover.gap.baseline import Baseline, prepare_baseline
-from discover.gap.figures import added_to, curves, shape_of
+from discover.gap.baseline import Baseline, added_to, prepare_baseline
+from discover.gap.figures import curves, shape_of
 from discover.gap.findings import findings_of
 from discover.gap.leftover import leftover_in_words
-from discover.gap.result import (
-    CLOSED,
-    CorrectedCurve,
-    Gap,
-    MendedTerm,
-    NamedEffect,
-    RecordGap,
-)
-from discover.gap.rounds import Round
-from discover.gap.search import Search, search
-from discover.gap.stages import Stage, seen_alike, seen_gap
-from discover.gap.standard_error import standard_errors
+from discover.gap.result import CLOSED, Gap, MendedTerm, NamedEffect, RecordGap
+from discover.gap.search import Round, Search, Stage, search
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import observe_all
-from discover.naming.contest import Contest
-from discover.naming.evidence import AGREES, UNKNOWN
-from discover.naming.fit import ModelFit
-from discover.naming.forces import model_force
-from discover.naming.unit_rows import whole_model
+from discover.posterior.grow import Step
+from discover.posterior.model import Number
+from discover.posterior.spread import Spread, spread_of
 from discover.record_checks import data_errors
 from discover.records import Campaign
+from discover.rows import Unexplained, alike_percent, force_rows, noise_percent, unexplained
 from models.checks import InputError, one_of
-from models.constitutive import Band, ForceModel, SegmentedModel
+from models.constitutive import Band, FittedTerm, ForceModel, SegmentedModel
 from models.terms import TERMS
 
+AGREES, UNKNOWN = "agrees", "unknown"
 _STATED = 0.97  # of the probability that the alternatives add up to
 _LEAST_STATED = 0.02
 _MOST_STATED = 6
 _EQUAL = 0.2  # of the named effect's probability: then they can't be told apart
-_CLOSED_BY_SHAPES = 1.5  # of the noise, where nothing but the shapes' own error is left
+_SHAPE_HOLDS = 0.1  # of an effect's size, that its shape may be wrong by
 
 
 def close_gap(
@@ -70,7 +59,7 @@ def close_gap(
         Ids that may be named; the whole vocabulary where not given, with what is added by
         `models.terms.own_terms`.
     seed : int
-        Kept in the document; the search draws nothing at random.
+        Kept in the document. Nothing in the search is random.
     jobs : int
         Threads for reading the records.
     tell : callable, optional
@@ -98,33 +87,30 @@ def close_gap(
     with threadpool_limits(1):  # its matrices are small: more threads take longer
         observations = observe_all(campaign.records, jobs)
         baseline = prepare_baseline(observations, model, fixed=fixed, device=campaign.device)
-        found = search(baseline, chosen, tell=tell)
-        return _answer(campaign, baseline, found, seed)
-
-
-def _unseen(stage: Stage) -> float | None:
-    return pooled(stage.unseen) if stage.unseen else None
+        return _answer(campaign, baseline, search(baseline, chosen, tell=tell), seed)
 
 
 def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) -> Gap:
-    rows, start, final = baseline.rows, found.baseline, found.final
-    seen = [i for i, r in enumerate(rows) if not r.observation.held_out]
-    noise = pooled([final.misfits[i] for i in seen], noise=True)
-    rounds = tuple(_named(baseline, entry) for entry in found.rounds)
-    located = places(rows, start.fit.model)
-    left = places(rows, final.fit.model)
-    final_gap = seen_gap(baseline.rows, final)
-    verdict = _verdict(baseline, found, final_gap, noise)
-    unexplained = float(np.sqrt(max(final_gap**2 - noise**2, 0.0)))
+    start, final = found.given, found.final
+    noise = noise_percent(final.seen)
+    spread = spread_of(baseline.assessor, final.assessed)
+    located = places(baseline.rows, start.models)
+    left = places(baseline.rows, final.models)
+    verdict = _verdict(found, noise)
+    rounds = tuple(_named(baseline, r, i, found) for i, r in enumerate(found.rounds))
     shape = ""
     if verdict not in ("agrees", "closed"):
-        told = (where_in_words(left).rstrip("."), leftover_in_words(rows, left, final.fit.model))
+        told = (
+            where_in_words(left).rstrip("."),
+            leftover_in_words(baseline.rows, left, final.models),
+        )
         shape = "; ".join(t for t in told if t)
     records = tuple(
         RecordGap(
-            r.observation.file, r.observation.held_out, now.noise_percent, was.percent, now.percent
+            a.observation.file, a.observation.held_out, a.noise_percent, was.relative_percent,
+            a.relative_percent,
         )
-        for r, was, now in zip(rows, start.misfits, final.misfits, strict=True)
+        for was, a in zip(start.accuracies, final.accuracies, strict=True)
     )
     return Gap(
         title=campaign.title,
@@ -133,20 +119,21 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         baseline=baseline.terms,
         fitted=baseline.fitted,
         fixed=baseline.fixed,
-        gap_percent=seen_gap(baseline.rows, start),
-        held_out_gap_percent=_unseen(start),
+        gap_percent=start.gap,
+        held_out_gap_percent=start.unseen_gap,
         noise_percent=noise,
         where=located,
         where_text=where_in_words(located),
         rounds=rounds,
-        mended=_mended_terms(baseline, found.final.fit),
+        mended=_mended_terms(baseline, final, spread),
         records=records,
         verdict=verdict,
-        final_gap_percent=final_gap,
-        final_held_out_gap_percent=_unseen(final),
-        unexplained_percent=unexplained,
+        final_gap_percent=final.gap,
+        final_held_out_gap_percent=final.unseen_gap,
+        unexplained_percent=float(np.sqrt(max(final.gap**2 - noise**2, 0.0))),
+        remainder=_remainder(baseline, final),
         shape=shape,
-        last=_stated(found.last, ""),
+        last=_contest(found),
         leave_one_out=not campaign.held_out,
         findings=(
             *data_errors(campaign),
@@ -158,107 +145,141 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
     )
 
 
-def _verdict(baseline: Baseline, found: Search, gap: float, noise: float) -> str:
-    """Return the verdict; of effects that were added before as of those that are added now."""
-    ended = found.last.ranked[0][0]
+def _remainder(baseline: Baseline, at: Stage) -> Unexplained:
+    pairs = [
+        (r, m) for r, m in zip(baseline.rows, at.models, strict=True)
+        if not r.observation.held_out
+    ]
+    return unexplained([r for r, _ in pairs], [force_rows(r, m) for r, m in pairs])
+
+
+def _verdict(found: Search, noise: float) -> str:
+    final = found.final
+    quiet = final.assessed.quiet
     if not found.rounds:
-        most = _CLOSED_BY_SHAPES * noise if baseline.added else np.inf
-        return "agrees" if ended == AGREES and gap <= most else "unexplained"
-    closed = _CLOSED_BY_SHAPES if ended == AGREES else CLOSED
-    return "closed" if gap <= closed * noise else "reduced"
+        return "agrees" if quiet else "unexplained"
+    return "closed" if quiet or final.gap <= CLOSED * noise else "reduced"
 
 
-def _stated(contest: Contest, name: str) -> tuple[tuple[str, float], ...]:
+def _name(identifier: str, at: Stage) -> str:
+    """Return an id; what the model as it is stands for where there is none."""
+    return identifier or (AGREES if at.assessed.quiet else UNKNOWN)
+
+
+def _contest(found: Search) -> tuple[tuple[str, float], ...]:
+    """Return the contest that ended the search, most probable first."""
+    if found.last is None:
+        return ((AGREES, 1.0),)
+    at = found.final
+    ranked = sorted(found.last.probabilities.items(), key=lambda item: -item[1])
+    return tuple(
+        (_name(name, at), p) for name, p in ranked[:_MOST_STATED]
+        if p >= _LEAST_STATED or name == ranked[0][0]
+    )
+
+
+def _alternatives(step: Step, effect: str, at: Stage) -> tuple[tuple[str, float], ...]:
     """Return what else it may be, until nearly all of the probability is stated."""
+    chances = step.probabilities
     stated: list[tuple[str, float]] = []
-    total = contest.probabilities.get(name, 0.0)
-    for other, probability in contest.ranked:
-        if other == name:
+    total = chances.get(effect, 0.0)
+    for name, p in sorted(chances.items(), key=lambda item: -item[1]):
+        if name == effect:
             continue
-        if total > _STATED or probability < _LEAST_STATED or len(stated) >= _MOST_STATED:
+        if total > _STATED or p < _LEAST_STATED or len(stated) >= _MOST_STATED:
             break
-        stated.append((other, probability))
-        total += probability
+        stated.append((_name(name, at), p))
+        total += p
     return tuple(stated)
 
 
-def _named(baseline: Baseline, entry: Round) -> NamedEffect:
-    fit, before, after = entry.stage.fit, entry.before, entry.after
-    index = next(i for i, t in enumerate(fit.model.terms) if t.id == entry.effect)
-    term = fit.model.terms[index]
-    error = standard_errors(baseline.fitted_rows, fit).get(index, 0.0)
-    probability = float(entry.contest.probabilities[entry.effect])
-    alternatives = _stated(entry.contest, entry.effect)
+def _named(baseline: Baseline, entry: Round, number: int, found: Search) -> NamedEffect:
+    before, after = entry.before, entry.after
+    spread = spread_of(baseline.assessor, after.assessed)
+    model = after.assessed.model
+    place = next(
+        i for i in reversed(range(len(model.terms))) if model.terms[i].fitted.id == entry.effect
+    )
+    own = [i for i, p in enumerate(model.terms) if p.fitted.id == entry.effect and not p.held]
+    place = own[0] if own else place
+    term = model.terms[place].fitted
+    alternatives = _alternatives(entry.step, entry.effect, before)
+    was, now = before.gap, after.gap
+    noise = noise_percent(after.seen)
+    missing = max(was**2 - noise**2, 1e-300)
+    share = 100.0 * min(max((was**2 - now**2) / missing, 0.0), 1.0)
+    effect_size = float(np.sqrt(max(was**2 - now**2, 0.0)))
+    left = _remainder(baseline, found.final).percent
+    unseen = before.unseen_gap, after.unseen_gap
+    better = None
+    if unseen[0] is not None and unseen[1] is not None:
+        better = unseen[1] < unseen[0]
     return NamedEffect(
         effect=entry.effect,
         parameters=dict(term.shape),
         coefficient=term.coefficient,
-        interval=(term.coefficient - 1.96 * error, term.coefficient + 1.96 * error),
+        interval=_interval(spread, place, term),
         unit=term.unit,
-        probability=probability,
+        probability=entry.step.probabilities[entry.effect],
         alternatives=alternatives,
         indistinguishable=tuple(
-            e for e, p in alternatives if p > _EQUAL * probability and e not in (AGREES, UNKNOWN)
+            e for e, p in alternatives
+            if p > _EQUAL * entry.step.probabilities[entry.effect] and e not in (AGREES, UNKNOWN)
         ),
-        gap=(seen_gap(baseline.rows, before), seen_gap(baseline.rows, after)),
-        alike=(seen_alike(baseline.rows, before), seen_alike(baseline.rows, after)),
-        unseen=(_unseen(before), _unseen(after)),
+        gap=(was, now),
+        alike=(alike_percent(before.seen), alike_percent(after.seen)),
+        unseen=unseen,
         dropped=entry.dropped,
-        corrected=None if entry.corrected is None else CorrectedCurve(
-            entry.corrected.effects,
-            seen_gap(baseline.rows, entry.stage),
-            _unseen(entry.stage),
-            entry.corrected.reversal,
+        share_percent=share,
+        shape_adequate=bool(
+            found.final.assessed.quiet or left <= _SHAPE_HOLDS * effect_size
+        ),
+        held_out_better=better,
+    )
+
+
+def _interval(spread: Spread, place: int, term: FittedTerm) -> tuple[float, float]:
+    low, high = term.term.coefficient_bounds(term.shape)
+    number = Number(place, None)
+    if number not in spread.numbers:
+        return term.coefficient, term.coefficient
+    return spread.interval(spread.numbers.index(number), low, high)
+
+
+def _mended_terms(baseline: Baseline, at: Stage, spread: Spread) -> tuple[MendedTerm, ...]:
+    held = [MendedTerm(t, None) for t in (baseline.terms if baseline.fixed else ())]
+    return (
+        *held,
+        *(
+            MendedTerm(p.fitted, _interval(spread, i, p.fitted))
+            for i, p in enumerate(at.assessed.model.terms)
+            if not p.held
         ),
     )
 
 
-def _mended_terms(baseline: Baseline, fit: ModelFit) -> tuple[MendedTerm, ...]:
-    errors = standard_errors(baseline.fitted_rows, fit)
-    result = [MendedTerm(t, None) for t in (baseline.terms if baseline.fixed else ())]
-    for index, term in enumerate(fit.model.terms):
-        half = 1.96 * errors.get(index, 0.0)
-        interval = (term.coefficient - half, term.coefficient + half) if index in errors else None
-        result.append(MendedTerm(term, interval))
-    return tuple(result)
-
-
 def _mended(campaign: Campaign, baseline: Baseline, found: Search) -> SegmentedModel:
-    terms = found.final.fit.model.terms
+    final = found.final
     if isinstance(baseline.whole, SegmentedModel) and len(baseline.whole.bands) > 1:
-        return added_to(baseline.whole, terms)
-    held = baseline.terms if baseline.fixed else ()
-    model = ForceModel((*held, *terms), "mended")
-    new = tuple(t.id for t in terms[len(baseline.model.terms) :])
+        return added_to(baseline.whole, final.terms)
+    model = ForceModel(final.models[0].terms, "mended")
+    new = [t.id for r in found.rounds for t in final.terms if t.id == r.effect]
+    tail = [t.id for t in model.terms[len(model.terms) - len(new) :]]
     return SegmentedModel(
         (Band(None, None, model),), "speed", "paper", campaign.device, "mended",
-        (*baseline.added, *new),
+        (*baseline.added, *(new if tail == new else ())),
     )
 
 
 def _figures(
     baseline: Baseline, found: Search, rounds: Sequence[NamedEffect]
 ) -> GapFigureData:
-    rows = baseline.rows
-    before, after = found.baseline.fit.model, found.final.fit.model
     drawn = tuple(
-        curves(
-            r,
-            model_force(r.observation, whole_model(r, before)),
-            model_force(r.observation, whole_model(r, after)),
-            was,
-            now,
-        )
-        for r, was, now in zip(rows, found.baseline.misfits, found.final.misfits, strict=True)
+        curves(was, now)
+        for was, now in zip(found.given.accuracies, found.final.accuracies, strict=True)
     )
     shapes = tuple(
-        shape_of(baseline.fitted_rows, entry, i, _relative(named))
-        for i, (entry, named) in enumerate(zip(found.rounds, rounds, strict=True))
+        shape_of(baseline.rows, found.rounds[i].after.models, named, i)
+        for i, named in enumerate(rounds)
     )
-    return GapFigureData(drawn, shapes, surface(rows, before))
-
-
-def _relative(named: NamedEffect) -> float:
-    if not named.coefficient:
-        return 0.0
-    return (named.interval[1] - named.interval[0]) / 3.92 / abs(named.coefficient)
+    return GapFigureData(drawn, shapes, surface(baseline.rows, found.given.models))

@@ -1,56 +1,131 @@
-"""The search round by round: until the noise floor, nothing significant, or nothing nameable."""
+"""The search round by round: until the noise, or nothing that makes the records more probable."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from discover.gap.baseline import Baseline
-from discover.gap.correction import corrected, reversal_corrected
-from discover.gap.doubt import doubt_of_added, share_of
-from discover.gap.rounds import (
-    Open,
-    Round,
-    exchanged,
-    named_again,
-    next_round,
-    weighed,
-    within,
-)
-from discover.gap.stages import Stage, seen_gap, stage
-from discover.naming.columns import CandidateColumns
-from discover.naming.contest import Contest
-from discover.naming.evidence import UNKNOWN
-from discover.naming.fit import fit_model, free_parameters, misfits
-from discover.naming.forces import has_joint
-from models.checks import Array
+from discover.posterior.assess import Assessed
+from discover.posterior.grow import Candidate, Step, grown
+from discover.posterior.left_out import left_out_growth
+from discover.posterior.reversal import reversal_of
+from discover.rows import Accuracy, accuracy, pooled_percent
+from models.constitutive import FittedTerm, ForceModel
 
 MOST_ROUNDS = 6
-_MOVED = 0.05  # of chi-square a row, by which refitting has to help to count as a change
-_MOST_MEMBERS = 4  # that are added to the curves of effects
+_WORSE = 1.02  # times the error of what was not fitted, that an effect may lead to
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A model on all records: before the first round, or after one."""
+
+    assessed: Assessed
+    """Fitted; friction by the whole of its curve."""
+    models: tuple[ForceModel, ...]
+    """The model in each record; friction by few curves."""
+    accuracies: tuple[Accuracy, ...]
+    """Of each record."""
+    unseen: tuple[Accuracy, ...]
+    """Of those that were not fitted: the held-out ones, or each left out in turn."""
+
+    @property
+    def seen(self) -> list[Accuracy]:
+        """Of those that were fitted."""
+        return [a for a in self.accuracies if not a.observation.held_out]
+
+    @property
+    def gap(self) -> float:
+        """Percent, pooled over the fitted records."""
+        return pooled_percent(self.seen)
+
+    @property
+    def unseen_gap(self) -> float | None:
+        """Percent, pooled over those that were not fitted; None where there are none."""
+        return pooled_percent(self.unseen) if self.unseen else None
+
+    @property
+    def terms(self) -> tuple[FittedTerm, ...]:
+        """All terms that are not held."""
+        return tuple(p.fitted for p in self.assessed.model.terms if not p.held)
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round."""
+
+    effect: str
+    """What was added."""
+    step: Step
+    """What else might have been."""
+    before: Stage
+    """Before it."""
+    after: Stage
+    """With it."""
+    dropped: tuple[str, ...] = ()
+    """Effects of earlier rounds that it made superfluous."""
 
 
 @dataclass(frozen=True)
 class Search:
     """The whole search."""
 
-    baseline: Stage
-    """Before: the model as it was given, or its terms fitted."""
+    given: Stage
+    """The model as it was given, or its terms fitted."""
     refitted: Stage
-    """The same terms with their free coefficients fitted; the baseline where there are none."""
+    """The same terms with their free coefficients fitted."""
     rounds: tuple[Round, ...]
     """In order."""
-    last: Contest
-    """That ended it."""
+    last: Step | None
+    """What might have been added and was not; None where only noise was left."""
     rejected: str | None = None
-    """An effect that lowered the misfit in its weights, not the gap in N or of records left out."""
+    """An effect that would predict what was not fitted worse."""
 
     @property
     def final(self) -> Stage:
         """The last stage."""
         return self.rounds[-1].after if self.rounds else self.refitted
+
+
+def stage(baseline: Baseline, assessed: Assessed) -> Stage:
+    """Return what an assessed model makes of every record."""
+    own = tuple(p.fitted for p in assessed.model.terms if not p.held)
+    models = baseline.with_terms(_few_curves(baseline, assessed, own))
+    accuracies = tuple(
+        accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
+    )
+    held = tuple(a for a in accuracies if a.observation.held_out)
+    return Stage(
+        assessed, tuple(models), accuracies, held or _left_out(baseline, assessed, accuracies)
+    )
+
+
+def _few_curves(
+    baseline: Baseline, assessed: Assessed, terms: Sequence[FittedTerm]
+) -> tuple[FittedTerm, ...]:
+    """Return a model's terms, friction by the few curves that make the one that was found."""
+    if baseline.fixed:
+        return tuple(terms)
+    found = reversal_of(baseline.assessor, assessed)
+    if found is None:
+        return tuple(terms)
+    name = found.terms[0].id
+    place = next(i for i, t in enumerate(terms) if t.id == name)
+    return (*terms[:place], *found.terms, *terms[place + 1 :])
+
+
+def _left_out(
+    baseline: Baseline, assessed: Assessed, accuracies: Sequence[Accuracy]
+) -> tuple[Accuracy, ...]:
+    """Return each record's accuracy by the model fitted to the others."""
+    if len(accuracies) < 2:
+        return ()
+    growth = left_out_growth(baseline.assessor, assessed)
+    return tuple(
+        replace(a, error_power=a.error_power + float(g) * a.force_power)
+        for a, g in zip(accuracies, growth, strict=True)
+    )
 
 
 def search(
@@ -73,64 +148,83 @@ def search(
     tell : callable, optional
         Is told in words what each round added.
     """
-    rows = baseline.rows
-    fitted = baseline.fitted_rows
-    fixed = fit_model(fitted, baseline.model, ())
-    start = stage(rows, fixed)
-    fit = fit_model(fitted, baseline.model, free_parameters(baseline.model))
-    moved = fixed.chi2 - fit.chi2 > _MOVED * fit.residual.size
-    refitted = stage(rows, fit) if moved else start
-    first = replace(refitted, fit=fit)
+    assessor = baseline.assessor
+    start = assessor.space.start
+    given = _given(baseline)
+    now = assessor.assess(baseline.composite, start)
+    refitted = stage(baseline, now)
     rounds: list[Round] = []
-    tried: set[str] = set()
-    given = doubt_of_added(baseline, fit)
-    doubts: dict[str, Array] = {}  # chi-square by record that each effect's shape may be wrong by
-    members, curves = 0, True
-    deep, contest = True, None
-    columns = CandidateColumns(fitted)
-    while True:
-        now = rounds[-1].after if rounds else first
-        present = {t.id for t in now.fit.model.terms}
-        doubt = np.sum([given.by_record, *doubts.values()], axis=0)
-        open_effects = [e for e in effects if e not in present and e not in tried]
-        if contest is None:
-            settled = within(rows, now, rounds, given)
-            contest = weighed(fitted, now.fit, open_effects, doubt, columns, settled=settled)
-        left = Open(open_effects, rounds, len(rounds) < most, curves, deep, given, columns)
-        found = next_round(rows, fitted, now, left, *contest)
-        added, better = found.added, None
-        if added is not None:
-            added = named_again(rows, fitted, now, left, added, doubt)
-        elif rounds:
-            names, before = [r.effect for r in rounds], rounds[-1].members
-            most_members = _MOST_MEMBERS - members
-            better = corrected(rows, fitted, now, names, before=before, most=most_members)
-        if added is None and better is None:
-            if found.waits:
-                curves = False
-                continue
-            unnamed = found.contest.ranked[0][0] == UNKNOWN
-            if unnamed and not deep and not has_joint(now.fit.model):
-                deep = True
-                continue
-            better = reversal_corrected(rows, fitted, now, rounds[-1].members) if rounds else None
-            added = exchanged(rows, fitted, now, left, doubt, doubts) if better is None else None
-        if added is not None:
-            curves, deep, contest = True, False, None
-            without = added.beside or now.fit
-            explained = misfits(fitted, without) - misfits(fitted, added.stage.fit)
-            doubts[added.effect] = share_of(added.effect) ** 2 * np.maximum(explained, 0.0)
-            doubts.pop(added.instead_of, None)
-            tried |= set(added.dropped)
-            rounds.append(added)
-            if tell is not None:
-                gap = seen_gap(rows, added.stage)
-                tell(f"round {len(rounds)} added {added.effect}, gap {gap:.3g} %")
-        elif better is not None:
-            members += len(better.effects) - len(rounds[-1].members)
-            deep, contest = False, None
-            earlier = rounds[-1].corrected
-            kept = better.reversal or (earlier is not None and earlier.reversal)
-            rounds[-1] = replace(rounds[-1], corrected=replace(better, reversal=kept))
-        else:
-            return Search(start, refitted, tuple(rounds), found.contest, found.rejected)
+    last: Step | None = None
+    rejected = None
+    here = refitted
+    while len(rounds) < most:
+        there = {p.fitted.id for p in here.assessed.model.terms if not p.held}
+        open_ids = [e for e in effects if e not in there]
+        last = grown(assessor, here.assessed, open_ids)
+        added, rejected = _accepted(baseline, here, last)
+        if added is None:
+            break
+        after, dropped = _without_superfluous(baseline, rounds, added)
+        effect = last.candidates[0].id if rejected is None else added.id
+        rounds.append(Round(effect, last, here, after, dropped))
+        here = after
+        if tell is not None:
+            tell(f"round {len(rounds)} added {effect}, gap {after.gap:.3g} %")
+    return Search(given, refitted, tuple(rounds), last, rejected)
+
+
+def _given(baseline: Baseline) -> Stage:
+    """Return the stage of the model as it was given."""
+    assessor = baseline.assessor
+    assessed = assessor.assess(baseline.composite, assessor.space.start, refit=False)
+    models = baseline.given()
+    accuracies = tuple(
+        accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
+    )
+    held = tuple(a for a in accuracies if a.observation.held_out)
+    return Stage(assessed, tuple(models), accuracies, held or accuracies)
+
+
+def _accepted(
+    baseline: Baseline, here: Stage, step: Step
+) -> tuple[Candidate | None, str | None]:
+    """Return the most probable candidate that predicts what is not fitted no worse."""
+    rejected = None
+    for candidate in step.candidates:
+        if not candidate.id or candidate.assessed is None:
+            return None, rejected
+        after = stage(baseline, candidate.assessed)
+        was, now = here.unseen_gap, after.unseen_gap
+        if was is None or now is None or now <= _WORSE * was:
+            return candidate, rejected
+        rejected = rejected or candidate.id
+    return None, rejected
+
+
+def _without_superfluous(
+    baseline: Baseline, rounds: Sequence[Round], added: Candidate
+) -> tuple[Stage, tuple[str, ...]]:
+    """Return the stage with a candidate, without effects of earlier rounds that it replaces."""
+    if added.assessed is None:
+        raise ValueError("a candidate that is added is fitted")
+    assessed, dropped = added.assessed, list[str]()
+    for name in {r.effect for r in rounds}:
+        places = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == name]
+        if not places:
+            continue
+        less = assessed.model
+        for place in reversed(places):
+            less = less.without(place)
+        without = baseline.assessor.assess(less, assessed.place)
+        if without.value > assessed.value:
+            assessed = without
+            dropped.append(name)
+    return stage(baseline, assessed), tuple(dropped)
+
+
+def mean_square(accuracies: Sequence[Accuracy]) -> float:
+    """Return the error's energy of records over their samples, N^2."""
+    total = sum(a.samples * a.error_power for a in accuracies)
+    return float(total / max(sum(a.samples for a in accuracies), 1))
+
+

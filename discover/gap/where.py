@@ -9,9 +9,7 @@ import numpy as np
 
 from discover.figure_data import MisfitCell
 from discover.motion_fit import Observation
-from discover.naming.forces import model_force
-from discover.naming.rows import RecordRows
-from discover.naming.unit_rows import whole_model
+from discover.rows import RecordRows, force_at_samples, force_rows
 from models.checks import Array, Indices
 from models.constitutive import ForceModel
 
@@ -73,35 +71,34 @@ class Place:
 
 def misfit_at_samples(rows: RecordRows, model: ForceModel) -> Array:
     """Return measured less model at the usable samples, N."""
-    o = rows.observation
-    return np.asarray(o.measured - o.at_samples(model_force(o, whole_model(rows, model))))
+    return rows.observation.measured - force_at_samples(rows.observation, model)
 
 
-def places(rows: Sequence[RecordRows], model: ForceModel) -> tuple[Place, ...]:
-    """Return each record's part in the misfit of a model.
+def places(rows: Sequence[RecordRows], models: Sequence[ForceModel]) -> tuple[Place, ...]:
+    """Return each record's part in the misfit of models.
 
     Parameters
     ----------
     rows : sequence of RecordRows
         All records.
-    model : ForceModel
-        What is fitted in them; what they hold is added.
+    models : sequence of ForceModel
+        The model in each.
     """
     energies = []
-    for r in rows:
+    for r, model in zip(rows, models, strict=True):
         left = misfit_at_samples(r, model)
         energies.append(float(np.mean(left**2)) * left.size)
     total = max(sum(energies), 1e-300)
     return tuple(
         _place(r, model, energy / total, len(rows))
-        for r, energy in zip(rows, energies, strict=True)
+        for r, model, energy in zip(rows, models, energies, strict=True)
     )
 
 
 def _place(rows: RecordRows, model: ForceModel, share: float, count: int) -> Place:
     o = rows.observation
     left = misfit_at_samples(rows, model)
-    whitened = rows.target - rows.project(model_force(o, whole_model(rows, model)))
+    whitened = rows.target - force_rows(rows, model)
     ratio = float(np.mean(whitened**2))
     limit = 1.2 + np.sqrt(2.0 / whitened.size) * np.sqrt(2.0 * np.log(20.0 * count))
     x, v, a = (
@@ -162,16 +159,17 @@ def _odd(rows: RecordRows, model: ForceModel) -> float:
     if o.kind != "sine":
         return float("nan")
     window = o.windows[0]
-    lines = window.force - window.project(model_force(o, whole_model(rows, model)))
+    left = misfit_at_samples(rows, model)
+    lines = window.project(left)
     power = np.abs(lines) ** 2
     return float(power[1::2].sum() / max(power.sum(), 1e-300))
 
 
-def surface(rows: Sequence[RecordRows], model: ForceModel) -> tuple[MisfitCell, ...]:
+def surface(rows: Sequence[RecordRows], models: Sequence[ForceModel]) -> tuple[MisfitCell, ...]:
     """Return the misfit over displacement and velocity, all records together."""
     total = np.zeros((_CELLS, _CELLS))
     count = np.zeros((_CELLS, _CELLS))
-    for r in rows:
+    for r, model in zip(rows, models, strict=True):
         o = r.observation
         left = misfit_at_samples(r, model)
         level = max(float(np.sqrt(np.mean(left**2))), 1e-300)

@@ -1,4 +1,4 @@
-"""Candidate columns: the terms of a motion, for the study's engine and for pysindy.
+"""The terms of a motion as features for pysindy.
 
 `InerterLibrary` loads when it is asked for: pysindy takes a second to import.
 """

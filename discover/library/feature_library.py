@@ -11,7 +11,7 @@ from pysindy.feature_library.base import BaseFeatureLibrary, x_sequence_or_item
 from pysindy.utils import AxesArray, comprehend_axes
 from sklearn.utils.validation import check_is_fitted
 
-from discover.library.dictionary import PLAIN, Column
+from discover.library.column import PLAIN, Column
 from models.checks import Array, InputError, finite_array, number, one_of
 from models.motion import Motion, SampledKind, sampled_motion
 from models.terms import find_term

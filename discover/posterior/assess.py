@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 from scipy.special import logsumexp
 
-from discover.posterior.climb import QUIET, Place, climb
+from discover.posterior.climb import Place, climb
 from discover.posterior.local import Judged, Local, fitted, judged
 from discover.posterior.model import Composite, Evaluator
-from discover.posterior.space import Part, Space
+from discover.posterior.space import Part, Space, departures
 
 _ROUNDS = 3  # of fitting and climbing
 _DOUBT = 3.0
@@ -48,8 +49,15 @@ class Assessor:
     """Of the records."""
     evaluator: Evaluator
     """Of models."""
-    curve: Part | None
-    """Departures of friction's curve; None where models hold no friction."""
+    friction: Part | None
+    """Friction with all its curves; None where models hold none."""
+    path: bool = True
+    """Whether curves count that remember the path."""
+
+    @cached_property
+    def curve(self) -> Part | None:
+        """Departures of friction's curve."""
+        return None if self.friction is None else departures(self.friction, path=self.path)
 
     def assess(
         self, model: Composite, start: Place, *, refit: bool = True, iterations: int = 12
@@ -66,20 +74,20 @@ class Assessor:
                 numbers=numbers, iterations=iterations,
             )
             visited = {}
-            found = climb(lambda p: self._at(local, p, visited), place)
+            found = climb(partial(self._at, local, visited), place)
             model = local.model
             if found == place and turn > 0:
                 break
             stays, place = found == place, found
             if stays:
                 break
-        quiet = self._at(local, QUIET, visited) > max(visited.values()) - _DOUBT
+        quiet = self._at(local, visited, self.space.quiet) > max(visited.values()) - _DOUBT
         best = judged(self.space, local, place.sizes(self.space.own_unit), self.curve_of(model))
         return Assessed(
             local, place, float(logsumexp(list(visited.values()))), best, visited, quiet
         )
 
-    def _at(self, local: Local, place: Place, visited: dict[Place, float]) -> float:
+    def _at(self, local: Local, visited: dict[Place, float], place: Place) -> float:
         if place not in visited:
             sizes = place.sizes(self.space.own_unit)
             visited[place] = judged(

@@ -6,10 +6,10 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from discover.posterior.columns import Changes, force_columns
 from discover.posterior.space import Space
 from discover.posterior.weigh import Trial, Trials
 from discover.rows import RecordRows
+from discover.rows.columns import Changes, force_columns
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import sine_motion
 from models.terms import TERMS, Scales, Start, Term

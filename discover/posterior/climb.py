@@ -14,37 +14,61 @@ STEP = 2.0
 """Ratio of neighbouring sizes."""
 _LEAST, _MOST = -12, 0  # powers of STEP, of the force
 _BETTER = 0.05  # nats, by which a move has to gain
-_START = (-8, -10, -8)
+_BEGIN = (-8, -8, -10)  # of the remainder, own friction, each independent error
 _STRIDES = (4, 1)
-_MOVES = sorted(
+_TOGETHER = sorted(
     (m for m in product((-1, 0, 1), repeat=3) if any(m)), key=lambda m: sum(map(abs, m))
 )
 
 
 @dataclass(frozen=True)
 class Place:
-    """A point of the grid: powers of two of the remainder, the loud error, and own friction."""
+    """A point of the grid."""
 
-    powers: tuple[int, int, int] = _START
-    """Of each size, over the force (friction: over what would make the whole of it)."""
+    powers: tuple[int, ...]
+    """Powers of `STEP` of the remainder, of own friction, and of each kind of independent error:
+    over the force (friction: over what would make the whole of it)."""
+
+    @classmethod
+    def start(cls, kinds: int) -> Place:
+        """Return where a search begins, with so many kinds of independent error."""
+        return cls((*_BEGIN[:2], *[_BEGIN[2]] * kinds))
+
+    @classmethod
+    def quiet(cls, kinds: int) -> Place:
+        """Return the place of a model that explains all but noise."""
+        return cls((_LEAST,) * (2 + kinds))
 
     def sizes(self, friction: float) -> Sizes:
         """Return the sizes, with that of own friction that would make the whole force, N."""
-        remainder, loud, own = (STEP**p for p in self.powers)
-        return Sizes(remainder, loud, friction * own)
+        remainder, own, *loud = (STEP**p for p in self.powers)
+        return Sizes(remainder, tuple(loud), friction * own)
 
-    def moved(self, move: tuple[int, int, int], stride: int = 1) -> Place:
+    def moved(self, move: tuple[int, ...], stride: int = 1) -> Place:
         """Return a place that many powers away, kept within the grid."""
         return Place(
-            tuple(  # type: ignore[arg-type]
+            tuple(
                 int(np.clip(p + stride * m, _LEAST, _MOST))
                 for p, m in zip(self.powers, move, strict=True)
             )
         )
 
+    def towards(self, other: Place) -> Place:
+        """Return the place half-way to another."""
+        return Place(tuple((p + q) // 2 for p, q in zip(self.powers, other.powers, strict=True)))
 
-QUIET = Place((_LEAST, _LEAST, _LEAST))
-"""Where a model explains all but noise."""
+    @property
+    def moves(self) -> list[tuple[int, ...]]:
+        """Moves of one size, two or three: independent errors all together, and each alone."""
+        kinds = len(self.powers) - 2
+        together = [(r, f, *[loud] * kinds) for r, f, loud in _TOGETHER]
+        if kinds < 2:
+            return together
+        alone = [
+            (0, 0, *(sign * int(k == i) for k in range(kinds)))
+            for i in range(kinds) for sign in (1, -1)
+        ]
+        return [*alone, *together]
 
 
 def climb(value: Callable[[Place], float], start: Place) -> Place:
@@ -62,7 +86,7 @@ def climb(value: Callable[[Place], float], start: Place) -> Place:
         moved = True
         while moved:
             moved = False
-            for move in _MOVES:
+            for move in here.moves:
                 there = here.moved(move, stride)
                 if there == here:
                     continue

@@ -2,7 +2,8 @@
 
 For every unit the covariance of the rows is white noise, and beside it
 
-- an independent error of `loud` times the record's force, on all rows but the fundamental's;
+- an independent error of `loud` times the record's force, on all rows but the fundamental's of a
+  sine test; in other records where the force is;
 - a remainder of `remainder` times the record's force: generic functions of the motion whose
   coefficients vary smoothly with frequency and amplitude, and a tenth of it from unit to unit;
 - friction of `friction` N that a unit has of its own.
@@ -36,8 +37,8 @@ class Sizes:
 
     remainder: float
     """Of the record's force."""
-    loud: float
-    """Likewise."""
+    loud: tuple[float, ...]
+    """(L,) of each kind of independent error, likewise."""
     friction: float
     """N."""
 
@@ -52,13 +53,19 @@ class Products:
     """(U, N, R) columns of friction that units may have of their own, per N."""
     columns: Array
     """(U, K, R) columns, the measured force last."""
-    loud: float
-    """Size of the independent error."""
+    loud: tuple[float, ...]
+    """(L,) sizes of the independent error."""
+
+    @cached_property
+    def _loud(self) -> Array:
+        """(U, R) variance of the independent error, over the noise's."""
+        square = np.square(self.loud)
+        return np.asarray(np.einsum("l,ulr->ur", square, self.sheet.loudness**2))
 
     @cached_property
     def scale(self) -> Array:
         """(U, R) by which rows are divided: the standard deviation of noise and loud error."""
-        return np.asarray(np.sqrt(1.0 + (self.loud * self.sheet.loudness) ** 2))
+        return np.asarray(np.sqrt(1.0 + self._loud))
 
     @cached_property
     def base(self) -> Array:
@@ -74,9 +81,9 @@ class Products:
     @cached_property
     def log_centre(self) -> float:
         """Log density of noise and loud error at their centre, with what was left out of rows."""
-        value = -0.5 * float(np.sum(np.log1p((self.loud * self.sheet.loudness) ** 2)))
-        count, energy, mean = self.sheet.rest.T
-        grown = 1.0 + self.loud**2 * mean
+        value = -0.5 * float(np.sum(np.log1p(self._loud)))
+        count, energy = self.sheet.rest[:, :2].T
+        grown = 1.0 + self.sheet.rest[:, 2:] @ np.square(self.loud)
         return value - 0.5 * float(np.sum(count * np.log(grown) + energy / grown))
 
 
@@ -148,6 +155,14 @@ class Given:
             self.outer, each.reshape(shape[0], -1), lower=True, check_finite=False
         )
         return within, shared.reshape(shape).transpose(1, 0, 2)
+
+    def within(self, more: Array) -> Array:
+        """Return products (U, T, T) of further columns (U, T, R) within units."""
+        p, nuisance = self.products, self.spread.size
+        new = more / p.scale[:, None]
+        plain = p.base[:, :nuisance] @ new.transpose(0, 2, 1)
+        taken = np.linalg.solve(self.inner, self.spread[:, None] * plain)
+        return np.asarray(new @ new.transpose(0, 2, 1) - taken.transpose(0, 2, 1) @ taken)
 
     def beside(self, columns: Indices, more: Array) -> tuple[Array, Array]:
         """Return products of further columns (U, T, R): with columns (K, T), and (T, T)."""

@@ -10,7 +10,6 @@ from scipy.special import logsumexp
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.catalogue import trials_of
-from discover.posterior.climb import QUIET, Place
 from discover.posterior.weigh import Gain, gains
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
@@ -74,8 +73,6 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         Terms that may join.
     """
     found = [Candidate("", now.value, now)]
-    if now.quiet and now.place.powers[0] <= QUIET.powers[0] + 1:
-        pass
     for simulated in (False, True):
         chosen = [i for i in ids if _simulated(i) is simulated]
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
@@ -99,7 +96,7 @@ def _tried(
         return []
     curve = assessor.curve_of(now.model)
     best: dict[str, list[Gain]] = {}
-    for place in dict.fromkeys((now.place, QUIET)):
+    for place in dict.fromkeys((now.place, space.quiet)):
         sizes = place.sizes(space.own_unit)
         for gain in gains(space, trials, now.local, sizes, curve):
             best.setdefault(gain.trial.id, []).append(gain)
@@ -133,19 +130,12 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
         terms = _begun(gain)
         model = now.model.plus(*terms)
         steps = 3 if len(chosen) > 1 else 12
-        begun.append((assessor.assess(model, _between(now.place), iterations=steps), gain))
+        begun.append((assessor.assess(model, now.place.towards(assessor.space.quiet), iterations=steps), gain))
     begun.sort(key=lambda b: -(b[0].value + b[1].trial.log_prior))
     first, gain = begun[0]
     first = assessor.assess(first.model, first.place)
     return Candidate(
         gain.trial.id, first.value + gain.trial.log_prior, first, len(gain.trial.terms)
-    )
-
-
-def _between(place: Place) -> Place:
-    """Return sizes half-way to those of noise."""
-    return Place(
-        tuple((p + q) // 2 for p, q in zip(place.powers, QUIET.powers, strict=True))  # type: ignore[arg-type]
     )
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.posterior.columns import force_columns, moved
 from discover.posterior.sheet import Sheet
 from discover.rows import RecordRows, force_rows
+from discover.rows.columns import force_columns, moved
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import Scales
@@ -155,7 +155,8 @@ class Evaluator:
                 with np.errstate(over="ignore", invalid="ignore"):  # a joint may shake itself apart
                     known[key] = force_rows(self._rows[unit.record], here)
             own = known[key]
-            blocks.append(own[None] if unit.basis is None else own[None][:, unit.part] @ unit.basis)
+            part = own[None][:, unit.part]
+            blocks.append(part if unit.basis is None else part @ unit.basis)
         size = self._sheet.target.shape[1]
         result = np.zeros((len(blocks), size))
         for place, block in enumerate(blocks):

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from discover.posterior.columns import force_columns, scales_of
 from discover.posterior.sheet import sheet_of
 from discover.posterior.space import Part, Space, curve_part
 from discover.rows import RecordRows
+from discover.rows.columns import force_columns, scales_of
 from models.checks import Array
 from models.constitutive import FittedTerm
 from models.terms import Term

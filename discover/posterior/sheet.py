@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from discover.rows import RecordRows
 from models.checks import Array, Indices
 
-_MOST_ROWS = 96  # of a unit of windows, after compression
+_MOST_ROWS = 400  # of a unit of windows: those of more are compressed
 _SEEN = 0.1  # of the noise, below which a direction of all columns together shows nothing
 _ALIKE = 0.3  # of the logarithm of frequency and of amplitude, within which windows are one unit
 _KERNEL = 1e-3  # of the greatest, below which a direction of the remainder is left out
@@ -48,18 +48,17 @@ class Sheet:
     remainder: Array
     """(U, F, R) generic functions of the motion."""
     loudness: Array
-    """(U, R) what an independent error of the record's own size is in each row."""
+    """(U, L, R) what each kind of independent error of the record's own size is in each row."""
     rest: Array
-    """(U, 3): number of rows that were left out, their sum of squares, mean loudness squared."""
+    """(U, 2 + L): number of rows that were left out, their sum of squares, mean loudness squared.
+    """
 
     def stack(self, columns: Sequence[Array]) -> Array:
         """Return columns (K, R_r) of every record as one array (U, K, R)."""
         found = []
         for unit in self.units:
-            own = columns[unit.record]
-            if unit.basis is not None:
-                own = own[:, unit.part] @ unit.basis
-            found.append(own)
+            own = columns[unit.record][:, unit.part]
+            found.append(own if unit.basis is None else own @ unit.basis)
         return padded(found, self.target.shape[1])
 
     @cached_property
@@ -96,29 +95,29 @@ def sheet_of(rows: Sequence[RecordRows], columns: Sequence[Array]) -> Sheet:
         What models are made of, in every record: of windows only directions in which these, the
         remainder or the measured force show are kept.
     """
+    kinds = max(r.loudness.shape[0] for r in rows)
+    rows = [replace(r, loudness=_all_kinds(r.loudness, kinds)) for r in rows]
     units: list[Unit] = []
     parts: list[tuple[Array, Array, Array]] = []
     rest = []
     for place, (r, own) in enumerate(zip(rows, columns, strict=True)):
         for unit in _units(r, place):
-            target, loudness = r.target[unit.part], r.loudness[unit.part]
+            target, loudness = r.target[unit.part], r.loudness[:, unit.part]
             remainder = r.remainder[:, unit.part]
-            left = np.zeros(3)
-            if unit.basis is None and r.cycle is None:
+            left = np.zeros(2 + loudness.shape[0])
+            if unit.part.size > _MOST_ROWS:
                 basis = _basis(own[:, unit.part], remainder, target)
                 unit = Unit(
                     unit.record, unit.part, unit.frequency, unit.amplitude, unit.speed, basis
                 )
                 energy = float(target @ target)
-                mean = float(np.mean(loudness**2))
+                mean = np.mean(loudness**2, axis=1)
                 target, remainder = target @ basis, remainder @ basis
-                loudness = np.sqrt(np.sum((loudness[:, None] * basis) ** 2, axis=0))
-                left = np.array(
-                    [unit.part.size - basis.shape[1], max(energy - float(target @ target), 0.0),
-                     mean]
-                )
+                loudness = np.sqrt(loudness**2 @ basis**2)
+                lost = max(energy - float(target @ target), 0.0)
+                left = np.array([unit.part.size - basis.shape[1], lost, *mean])
             units.append(unit)
-            parts.append((target[None], remainder, loudness[None]))
+            parts.append((target[None], remainder, loudness))
             rest.append(left)
     size = max(p[0].shape[1] for p in parts)
     functions = max(p[1].shape[0] for p in parts)
@@ -127,8 +126,13 @@ def sheet_of(rows: Sequence[RecordRows], columns: Sequence[Array]) -> Sheet:
         remainder[i, : p[1].shape[0], : p[1].shape[1]] = p[1]
     return Sheet(
         tuple(rows), tuple(units), padded([p[0] for p in parts], size)[:, 0], remainder,
-        padded([p[2] for p in parts], size)[:, 0], np.array(rest),
+        padded([p[2] for p in parts], size), np.array(rest),
     )  # fmt: skip
+
+
+def _all_kinds(loudness: Array, kinds: int) -> Array:
+    """Return loudness (L, R) with as many kinds as other records have."""
+    return np.concatenate([loudness, np.zeros((kinds - loudness.shape[0], loudness.shape[1]))])
 
 
 def padded(blocks: Sequence[Array], size: int) -> Array:

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from discover.posterior.columns import moved
+from discover.posterior.climb import Place
 from discover.posterior.covariance import Given, Products, Sizes, given
 from discover.posterior.sheet import Sheet
 from discover.rows import RecordRows
+from discover.rows.columns import moved
 from models.checks import Array, Indices
 from models.constitutive import FittedTerm
 from models.terms import Scales, Shape, Term
@@ -65,8 +66,18 @@ class Space:
     """N at which one of these makes the whole force."""
     columns_of: ColumnsOf
     """Gives the rows (K, R_r) of terms in a record."""
-    _products: dict[float, Products] = field(default_factory=dict)
+    _products: dict[tuple[float, ...], Products] = field(default_factory=dict)
     _given: dict[Sizes, Given] = field(default_factory=dict)
+
+    @property
+    def start(self) -> Place:
+        """Sizes from which a search starts."""
+        return Place.start(self.sheet.loudness.shape[1])
+
+    @property
+    def quiet(self) -> Place:
+        """Sizes of a model that explains all but noise."""
+        return Place.quiet(self.sheet.loudness.shape[1])
 
     def add(self, blocks: Sequence[Array]) -> Indices:
         """Add columns (K, R_r) of every record; return their places."""

@@ -1,4 +1,4 @@
-"""Weighted least squares on few terms: continuous shapes, exact best subsets, pysindy beside them.
+"""Exact best subsets of columns, as a function and as a pysindy optimizer.
 
 The names below load when they are asked for: pysindy takes a second to import.
 """
@@ -7,16 +7,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from discover.regression.baselines import baseline_answers
     from discover.regression.best_subset import Subset, SubsetPath, best_subsets
     from discover.regression.optimizer import BestSubset
 
-__all__ = ["BestSubset", "Subset", "SubsetPath", "baseline_answers", "best_subsets"]
+__all__ = ["BestSubset", "Subset", "SubsetPath", "best_subsets"]
 _HOME = {
     "BestSubset": "optimizer",
     "Subset": "best_subset",
     "SubsetPath": "best_subset",
-    "baseline_answers": "baselines",
     "best_subsets": "best_subset",
 }
 

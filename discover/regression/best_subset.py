@@ -19,8 +19,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from discover.regression.support import solve
-from discover.triangle import reduce_rows
+from discover.regression.least_squares import reduce_rows, solve
 from models.checks import Array, InputError, finite_array
 
 _ROWS_AT_ONCE = 4096

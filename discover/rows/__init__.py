@@ -1,6 +1,16 @@
 """A campaign's records as rows, and models on them: reduced once, for every verb."""
 
 from discover.motion_fit import Observation
+from discover.rows.accuracy import (
+    Accuracy,
+    Unexplained,
+    accuracy,
+    alike_percent,
+    compared_with,
+    noise_percent,
+    pooled_percent,
+    unexplained,
+)
 from discover.rows.band_rows import band_rows
 from discover.rows.force import force_at_samples, force_rows
 from discover.rows.record_rows import RecordRows
@@ -12,4 +22,17 @@ def record_rows(observation: Observation) -> RecordRows:
     return sine_rows(observation) if observation.kind == "sine" else band_rows(observation)
 
 
-__all__ = ["RecordRows", "force_at_samples", "force_rows", "record_rows"]
+__all__ = [
+    "Accuracy",
+    "RecordRows",
+    "Unexplained",
+    "accuracy",
+    "alike_percent",
+    "compared_with",
+    "force_at_samples",
+    "force_rows",
+    "noise_percent",
+    "pooled_percent",
+    "record_rows",
+    "unexplained",
+]

@@ -12,6 +12,7 @@ from models.checks import Array
 
 _TOLERANCE = 3e-5  # of a record's force: no model is better
 _MOST_HATS = 8
+_PER_E_FOLD = 3.0  # levels of force that are told apart, for each factor e of frequency
 _PRODUCTS = ((0, 0), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
 """Powers of displacement and velocity whose products stand for a static law."""
 
@@ -31,7 +32,6 @@ def band_rows(observation: Observation) -> RecordRows:
 
     lines = [real_rows(w.force) * s for w, s in zip(windows, scales, strict=True)]
     size = np.sqrt(power) * np.concatenate(scales)
-    spread = np.concatenate([np.full(s.size, 1.0 / np.sqrt(s.size)) for s in scales])
     ends = np.cumsum([0, *(s.size for s in scales)])
     motion = replace(observation.motion, test=observation.test)
     return RecordRows(
@@ -43,7 +43,7 @@ def band_rows(observation: Observation) -> RecordRows:
         of_motion=of_motion,
         cycle_rows=None,
         remainder=_remainder(observation, of_motion, scales, power),
-        loudness=size * spread,
+        loudness=np.stack([np.zeros_like(size), size * np.sqrt(_local(windows))]),
         windows=tuple(slice(int(a), int(b)) for a, b in zip(ends[:-1], ends[1:], strict=True)),
     )
 
@@ -70,6 +70,30 @@ def _remainder(
     energy = sum(share * np.sum(rows**2, axis=1) for rows, _, share in found)
     unit = np.sqrt(power / energy.size / np.maximum(energy, 1e-300))
     return np.concatenate([rows * unit[:, None] * s for rows, s, _ in found], axis=1)
+
+
+def _local(windows: tuple[Window, ...]) -> Array:
+    """Return the share (R,) of a window's force that is near each row's frequency.
+
+    What models miss is large where the force is.
+    """
+    omega = np.concatenate([w.omega for w in windows])
+    power = np.concatenate([np.abs(w.force) ** 2 for w in windows])
+    lowest = omega[omega > 0.0].min()
+    place = np.log(np.maximum(omega, lowest))
+    count = max(int(np.ceil(_PER_E_FOLD * np.ptp(place))), 1)
+    cell = np.minimum(((place - place.min()) / max(float(np.ptp(place)), 1e-9) * count).astype(int),
+                      count - 1)
+    number = np.maximum(np.bincount(cell, minlength=count), 1)
+    level = np.bincount(cell, power, minlength=count) / number
+    middle = place.min() + (np.arange(count) + 0.5) * float(np.ptp(place)) / count
+    shown = level > 0.0
+    found = []
+    for w in windows:
+        at = np.log(np.maximum(w.omega, lowest))
+        own = np.exp(np.interp(at, middle[shown], np.log(level[shown])))
+        found.append(np.tile(own / own.sum() / 2.0, 2))
+    return np.concatenate(found)
 
 
 def _hats(windows: tuple[Window, ...], responses: list[Array]) -> list[Array]:

@@ -12,6 +12,7 @@ from discover.rows.sine_rows import POINTS
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
+from models.terms.between_tests import ONLY
 
 
 def drifts(fitted: FittedTerm) -> bool:
@@ -40,6 +41,32 @@ def at_moments(cycle: Array, time: Array, frequency: float) -> Array:
     return np.asarray(np.interp(phase, grid, np.append(cycle, cycle[0])))
 
 
+def in_test(model: ForceModel, test: int) -> ForceModel:
+    """Return a model as it is in a test, numbered from 1.
+
+    Of terms that each hold in one test only, a test that has none of its own takes their mean.
+    """
+    own: dict[tuple[object, ...], list[FittedTerm]] = {}
+    kept = []
+    for t in model.terms:
+        only = t.shape.get(ONLY.name, 0.0)
+        if only == 0.0:
+            kept.append(t)
+        else:
+            others = tuple(v for v in t.shape.items() if v[0] != ONLY.name)
+            own.setdefault((t.id, *others), []).append(t)
+    if not own:
+        return model
+    for terms in own.values():
+        here = [t for t in terms if t.shape[ONLY.name] == test]
+        if here or not test:
+            kept += here
+            continue
+        mean = float(np.mean([t.coefficient for t in terms]))
+        kept.append(FittedTerm(terms[0].id, mean, {**terms[0].shape, ONLY.name: float(test)}))
+    return ForceModel(tuple(kept), model.name)
+
+
 def force_rows(rows: RecordRows, model: ForceModel) -> Array:
     """Return a model's rows (R,) in a record."""
     if rows.cycle is None or rows.cycle_rows is None:
@@ -57,6 +84,7 @@ def force_at_samples(observation: Observation, model: ForceModel) -> Array:
 
     Low-passed to the band where the record is no sine test, as `Observation.measured` is.
     """
+    model = in_test(model, observation.test)
     if observation.cycle is None:
         motion = replace(observation.motion, test=observation.test)
         return observation.at_samples(model.force(motion))

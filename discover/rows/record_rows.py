@@ -41,7 +41,8 @@ class RecordRows:
     remainder: Array
     """(F, R) rows of generic functions of the motion, by which what no term has may differ."""
     loudness: Array
-    """(R,) what an independent error of the record's own size is in each row."""
+    """(L, R) what each kind of independent error of the record's own size is in each row: the first
+    of sine tests, the second of others."""
     windows: tuple[slice, ...]
     """Rows of each window; all rows of a sine test."""
 

@@ -70,7 +70,7 @@ def sine_rows(observation: Observation) -> RecordRows:
         of_motion=of_motion,
         cycle_rows=np.asarray(on_cells @ whitened),
         remainder=_remainder(size, count, phase),
-        loudness=size * _loudness(order, count),
+        loudness=(size * _loudness(order, count))[None],
         windows=(slice(0, size.size),),
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from discover.figure_data import RecordCurves
-from discover.study.accuracy import Accuracy
+from discover.rows import Accuracy
 from models.device import Device
 from models.flow import dean_per_speed
 

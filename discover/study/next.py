@@ -3,24 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from discover.bands.composite import composite_of
+from discover.bands.extras import Found
 from discover.dean import DeanCheck
-from discover.next_test import NextTest, admissible_tests, propose
+from discover.next_test import NextTest, Rival, admissible_tests, propose
+from discover.posterior.local import fitted, judged
 from discover.records import RigLimits
-from discover.study.bands import Bands
-from discover.study.preparation import Prepared
+from discover.study.bands import core_probabilities
+from discover.study.estimate import Estimates
+from discover.study.prepare import Prepared
 from discover.study.result import StudyBand, StudyBoundary
+from models.checks import Array
+from models.constitutive import FittedTerm
 
 _DEAN = ("a boundary at fixed Dean number", "a boundary at fixed frequency")
 _HALVED = float(np.log(2.0))
+_NARROW = 0.05  # of the coordinate's logarithm, that no bracket needs to be narrower than
 
 
 def next_test(
     prepared: Prepared,
-    bands: Bands,
-    study_bands: Sequence[StudyBand],
+    found: Found,
+    estimates: Estimates,
+    bands: Sequence[StudyBand],
     boundaries: Sequence[StudyBoundary],
     check: DeanCheck,
     limits: RigLimits | None,
@@ -30,46 +39,106 @@ def next_test(
     First comes a band whose structure is open, the least certain first; then whether the boundary
     follows the Dean number; then a boundary whose bracket can be halved.
     """
-    per_speed = _per_speed(bands, boundaries)
+    units = found.search.space.sheet.units
+    tested = (
+        np.array([u.frequency for u in units]), np.array([u.amplitude for u in units])
+    )
     open_bands = sorted(
-        (b for b in range(len(study_bands)) if len(study_bands[b].equivalents) > 1),
-        key=lambda b: study_bands[b].probability,
+        (b for b in range(len(bands)) if len(bands[b].equivalents) > 1),
+        key=lambda b: bands[b].probability,
     )
     for b in open_bands:
-        band = study_bands[b]
-        inside = (band.lower or 0.0, np.inf if band.upper is None else band.upper)
-        found = propose(
-            bands.judgements[b],
-            prepared.dictionary,
-            limits,
-            inside=inside if len(study_bands) > 1 else (0.0, np.inf),
-            per_speed=per_speed,
-        )
-        if found is not None:
-            return found
+        test = _between_structures(prepared, found, estimates, b, tested, limits)
+        if test is not None:
+            return test
     if not boundaries:
         return None
     if check.verdict == "undetermined":
-        return _other_amplitude(prepared, boundaries[0], limits)
-    return _halving(prepared, bands, boundaries)
+        return _other_amplitude(tested, boundaries[0], limits)
+    return _halving(tested, bands, boundaries)
 
 
-def _per_speed(bands: Bands, boundaries: Sequence[StudyBoundary]) -> float | None:
-    if bands.coordinate == "frequency":
-        return None
-    if bands.coordinate == "speed" or not boundaries or boundaries[0].speed is None:
-        return 1.0
-    return boundaries[0].coordinate / boundaries[0].speed
+def _between_structures(
+    prepared: Prepared,
+    found: Found,
+    estimates: Estimates,
+    band: int,
+    tested: tuple[Array, Array],
+    limits: RigLimits | None,
+) -> NextTest | None:
+    """Return the test that best tells a band's two leading structures apart."""
+    chances = core_probabilities(found, band)
+    names = sorted(chances, key=lambda name: -chances[name])[:2]
+    rivals = [_rival(prepared, found, estimates, band, name, chances[name]) for name in names]
+    frequencies, amplitudes = admissible_tests(*tested, limits)
+    banded = found.banded
+    if banded.bands > 1:
+        value = frequencies if banded.coordinate == "frequency" else (
+            2.0 * np.pi * frequencies * amplitudes
+        )
+        low = banded.brackets[band - 1][0] if band else 0.0
+        high = banded.brackets[band][1] if band < banded.bands - 1 else np.inf
+        inside = (value > low) & (value < high)
+        frequencies, amplitudes = frequencies[inside], amplitudes[inside]
+    return propose(
+        rivals, frequencies, amplitudes, noise=_line_noise(prepared),
+        max_force=None if limits is None else limits.max_force,
+    )
+
+
+def _line_noise(prepared: Prepared) -> float:
+    """Return a line's standard deviation over its record's rms force, the median of records."""
+    levels = [
+        float(np.sqrt(np.median(w.variance) / max(w.power, 1e-300)))
+        for r in prepared.rows
+        for w in r.observation.windows
+    ]
+    return float(np.median(levels))
+
+
+def _rival(
+    prepared: Prepared, found: Found, estimates: Estimates, band: int, name: str, chance: float
+) -> Rival:
+    """Return a structure in a band, fitted beside the other bands' own."""
+    banded = found.banded
+    best = max(
+        (v for v in range(len(found.variants)) if found.variants[v].core == name),
+        key=lambda v: float(banded.by_variant[band, v]),
+    )
+    variants = list(banded.variants)
+    variants[band] = best
+    shared = [t for j in found.joined for t in j.terms]
+    if prepared.device.with_friction:
+        shared.append(FittedTerm(prepared.device.friction.id, 1.0, {}))
+    model = composite_of(replace(banded, variants=tuple(variants)), found.variants, shared)
+    assessor = estimates.assessor
+    sizes = banded.place.sizes(assessor.space.own_unit)
+    curve = assessor.curve_of(model)
+    local = fitted(assessor.space, assessor.evaluator, model, sizes, curve)
+    solved = judged(assessor.space, local, sizes, curve).solved
+    inside = [
+        i for i, n in enumerate(local.numbers)
+        if _in_band(local.model.terms[n.term].share, banded.shares[band])
+    ]
+    unit = int(banded.shares[band].argmax())
+    return Rival(
+        name, chance, local.model, unit, tuple(local.numbers[i] for i in inside),
+        solved.covariance[np.ix_(inside, inside)],
+    )
+
+
+def _in_band(share: tuple[float, ...] | None, own: Array) -> bool:
+    return share is None or bool(np.any(np.array(share) * own > 0.0))
 
 
 def _other_amplitude(
-    prepared: Prepared, boundary: StudyBoundary, limits: RigLimits | None
+    tested: tuple[Array, Array], boundary: StudyBoundary, limits: RigLimits | None
 ) -> NextTest | None:
     """Return a test at the boundary's frequency, at the amplitude furthest from those tested."""
-    tested = np.array([w.amplitude for w in prepared.fitted])
-    frequencies, amplitudes = admissible_tests(prepared.fitted, limits)
-    wider = np.unique(np.concatenate([amplitudes, tested.min() / np.array([2.0, 4.0])]))
-    distance = [float(np.min(np.abs(np.log(a / tested)))) for a in wider]
+    known = tested[1]
+    frequencies, amplitudes = admissible_tests(*tested, limits)
+    wider = np.unique(np.concatenate([amplitudes, known.min() / np.array([2.0, 4.0])]))
+    distance = [float(np.min(np.abs(np.log(a / known)))) for a in wider]
     amplitude = float(wider[int(np.argmax(distance))])
     if max(distance) < _HALVED / 2.0 or not frequencies.size:
         return None
@@ -77,17 +146,19 @@ def _other_amplitude(
 
 
 def _halving(
-    prepared: Prepared, bands: Bands, boundaries: Sequence[StudyBoundary]
+    tested: tuple[Array, Array], bands: Sequence[StudyBand], boundaries: Sequence[StudyBoundary]
 ) -> NextTest | None:
     """Return the test in the middle of the widest bracket between two bands."""
     widths = [float(np.log(b.bracket[1] / b.bracket[0])) for b in boundaries]
     index = int(np.argmax(widths))
     boundary = boundaries[index]
-    if widths[index] < 0.05:
+    if widths[index] < _NARROW:
         return None
-    amplitude = float(np.median([w.amplitude for w in prepared.fitted]))
+    amplitude = float(np.median(tested[1]))
     frequency = boundary.frequency_hz
     if boundary.speed is not None:
         frequency = boundary.speed / (2.0 * np.pi * amplitude)
-    names = tuple(j.structure for j in bands.judgements[index : index + 2])
+    names = [b.structure for b in bands[index : index + 2]]
     return NextTest(float(frequency), amplitude, (names[0], names[1]), _HALVED)
+
+

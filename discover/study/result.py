@@ -10,6 +10,7 @@ from discover.figure_data import StudyFigureData
 from discover.header import document_header
 from discover.next_test import NextTest
 from discover.records import Finding
+from discover.rows import Unexplained
 from models.constitutive import FittedTerm, SegmentedModel
 
 Interval = tuple[float, float]
@@ -61,6 +62,56 @@ class Nuisance:
 
 
 @dataclass(frozen=True)
+class Extra:
+    """What a device has beside its structure."""
+
+    term: TermEstimate
+    """With its numbers."""
+    probability: float
+    """Of its name, beside what else might have taken its place."""
+    alternatives: tuple[tuple[str, float], ...]
+    """What that is, most probable first."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        return {
+            **self.term.to_dict(),
+            "probability": self.probability,
+            "alternatives": [{"effect": e, "probability": p} for e, p in self.alternatives],
+        }
+
+
+@dataclass(frozen=True)
+class FrictionCurve:
+    """How friction reverses."""
+
+    text: str
+    """In words."""
+    key: str
+    """"presliding_displacement" (m) or "transition_speed" (m/s); "" where it jumps."""
+    value: float
+    """Of that, by the one curve that fits best."""
+    interval: Interval
+    """95 %."""
+    probability: float
+    """That it is a displacement, or a speed, over which friction reverses."""
+    differs_by_record: float
+    """Standard deviation between records, over the friction."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the document's entry."""
+        result: dict[str, Any] = {
+            "curve": self.text,
+            "probability": self.probability,
+            "differs_by_record": self.differs_by_record,
+        }
+        if self.key:
+            result[self.key] = self.value
+            result[f"{self.key}_interval"] = list(self.interval)
+        return result
+
+
+@dataclass(frozen=True)
 class StudyBand:
     """One band: what holds there, how surely, how well."""
 
@@ -90,6 +141,12 @@ class StudyBand:
     """Of the structure."""
     equivalents: tuple[tuple[str, float], ...]
     """Structures that the data can't rule out, the named one first."""
+    extras: tuple[Extra, ...]
+    """What the device has beside the structure."""
+    remainder: Unexplained
+    """What no term explains, beyond noise."""
+    friction: FrictionCurve | None
+    """How friction reverses; None without friction."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document's entry."""
@@ -101,6 +158,10 @@ class StudyBand:
             "records": list(self.records),
             "family": self.family,
             "structure": self.structure,
+            "core": self.structure,
+            "extras": [e.to_dict() for e in self.extras],
+            "remainder_percent": self.remainder.to_dict(),
+            "friction": None if self.friction is None else self.friction.to_dict(),
             "terms": [t.to_dict() for t in self.terms],
             "error_percent": self.error_percent,
             "relative_error_percent": self.relative_error_percent,

@@ -3,32 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
-from discover.dean import DeanCheck, check_dean
+from discover.bands.boundaries import Boundary, boundaries_of, line_evidence
+from discover.bands.extras import Found, found
+from discover.dean import AmplitudeExponent, DeanCheck, amplitude_exponent, check_dean
 from discover.figure_data import StructureProbability, StudyFigureData
-from discover.library.dictionary import DELAY, Dictionary
+from discover.motion_fit import Observation
 from discover.records import Campaign
-from discover.regression.baselines import baseline_answers
-from discover.regression.support import fitted_terms
-from discover.segmentation import Boundary
-from discover.selection.judge import Judgement
-from discover.selection.materiality import relative_triangle
-from discover.selection.structures import STRUCTURES, family_of
-from discover.study.accuracy import Accuracy, noise_percent, pooled_percent, predict
-from discover.study.bands import Bands, coordinate_values, find_bands
+from discover.rows import Accuracy, accuracy, pooled_percent
+from discover.study.bands import core_probabilities, study_bands
+from discover.study.baselines import baseline_answers
+from discover.study.estimate import Estimates, estimated
 from discover.study.figures import record_curves
 from discover.study.findings import study_findings
 from discover.study.next import next_test
 from discover.study.options import StudyOptions
-from discover.study.preparation import Prepared, prepare
-from discover.study.result import Nuisance, Study, StudyBand, StudyBoundary, TermEstimate
+from discover.study.prepare import Prepared, prepare
+from discover.study.result import Nuisance, Study, StudyBand, StudyBoundary
+from models.checks import Array
 from models.constitutive import Band, ForceModel, SegmentedModel
+from models.cores import CORES
 from models.device import Device
 from models.flow import dean_per_speed
-
-OPEN = 0.05  # probability from which a structure can't be ruled out
 
 
 def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
@@ -51,217 +52,148 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
         Where a record can't be used, or none may be fitted.
     """
     chosen = options or StudyOptions()
+    with threadpool_limits(1):  # its matrices are small: more threads take longer
+        prepared = prepare(campaign, chosen)
+        answer = found(prepared.device)
+        return _study(campaign, chosen, prepared, answer, estimated(prepared, answer))
+
+
+def _study(
+    campaign: Campaign,
+    chosen: StudyOptions,
+    prepared: Prepared,
+    answer: Found,
+    estimates: Estimates,
+) -> Study:
     device = campaign.device
-    prepared = prepare(campaign, chosen)
-    bands = find_bands(prepared, device, chosen)
-    model = _model(bands, prepared.dictionary, device, chosen.convention)
-    place = _places(prepared, bands, device, chosen.convention)
+    coordinate, scale = _coordinate(answer, device, chosen)
+    ends = boundaries_of(answer.search, answer.banded)
+    edges = [None, *(scale * e.value for e in ends), None]
+    place = [_band_of(o, ends, answer.banded.coordinate) for o in prepared.observations]
     accuracies = [
-        predict(o, model.bands[b].model, prepared.delay + _delay(bands.judgements[b]))
-        for o, b in zip(prepared.observations, place, strict=True)
+        accuracy(o, estimates.models[b]) for o, b in zip(prepared.observations, place, strict=True)
     ]
+    bands = study_bands(prepared, answer, estimates, accuracies, place, edges)
+    boundaries = tuple(
+        _boundary(e, b, answer, device, chosen.convention, scale) for b, e in enumerate(ends)
+    )
+    exponent = _exponent(answer) if boundaries else None
+    check = _dean(boundaries, exponent, device, chosen)
+    nuisance = _nuisance(bands)
+    findings = study_findings(campaign, prepared, answer, bands, nuisance, ends, chosen)
+    model = SegmentedModel(
+        tuple(
+            Band(edges[b], edges[b + 1], m) for b, m in enumerate(_named(estimates, bands))
+        ),
+        coordinate, chosen.convention, device,
+    )  # fmt: skip
     fitted = [a for a in accuracies if not a.observation.held_out]
     held = [a for a in accuracies if a.observation.held_out]
-    study_bands = tuple(
-        _band(b, bands, prepared, model, accuracies, place) for b in range(len(bands.judgements))
-    )
-    boundaries = tuple(
-        _boundary(b, bands, device, chosen.convention, prepared, first=i == 0)
-        for i, b in enumerate(bands.segmentation.boundaries)
-    )
-    check = _dean(bands, boundaries, device, chosen)
-    nuisance = _nuisance(bands.judgements, prepared.delay)
-    findings = study_findings(campaign, prepared, bands, study_bands, nuisance, chosen)
     return Study(
         title=campaign.title,
         content_hash=campaign.content_hash,
         seed=chosen.seed,
-        coordinate=bands.coordinate,
+        coordinate=coordinate,
         relative_error_percent=pooled_percent(fitted),
         held_out_relative_error_percent=pooled_percent(held) if held else None,
-        identifiable=all(len(b.equivalents) < 2 for b in study_bands),
+        identifiable=all(len(b.equivalents) < 2 for b in bands),
         findings=findings,
-        bands=study_bands,
+        bands=bands,
         nuisance=nuisance,
         boundaries=boundaries,
         dean_check=check,
-        next_test=next_test(prepared, bands, study_bands, boundaries, check, campaign.rig),
+        next_test=next_test(
+            prepared, answer, estimates, bands, boundaries, check, campaign.rig
+        ),
         model=model,
-        figure_data=_figures(bands, prepared, accuracies, place, device),
+        figure_data=_figures(prepared, answer, bands, accuracies, place, device),
     )
 
 
-def _delay(judgement: Judgement) -> float:
-    ids = judgement.support.ids
-    return float(judgement.fit.coefficients[ids.index(DELAY)]) if DELAY in ids else 0.0
+def _named(estimates: Estimates, bands: Sequence[StudyBand]) -> list[ForceModel]:
+    return [replace(m, name=b.structure) for m, b in zip(estimates.models, bands, strict=True)]
 
 
-def _edges(bands: Bands) -> list[float | None]:
-    return [None, *(b.value for b in bands.segmentation.boundaries), None]
+def _coordinate(
+    answer: Found, device: Device | None, options: StudyOptions
+) -> tuple[str, float]:
+    """Return the coordinate that bands are stated in, and what the search's is times."""
+    if answer.banded.coordinate == "frequency" or options.coordinate == "frequency":
+        return "frequency", 1.0
+    if device is None or options.coordinate == "speed":
+        return "speed", 1.0
+    return "dean", dean_per_speed(device, convention=options.convention)
 
 
-def _model(
-    bands: Bands, dictionary: Dictionary, device: Device | None, convention: str
-) -> SegmentedModel:
-    edges = _edges(bands)
-    parts = tuple(
-        Band(edges[i], edges[i + 1], ForceModel(fitted_terms(j.fit, dictionary), j.structure))
-        for i, j in enumerate(bands.judgements)
-    )
-    return SegmentedModel(parts, bands.coordinate, convention, device)
+def _band_of(observation: Observation, ends: Sequence[Boundary], coordinate: str) -> int:
+    """Return the band of a record, by the search's coordinate."""
+    value = observation.frequency if coordinate == "frequency" else observation.speed
+    return int(np.searchsorted([e.value for e in ends], value))
 
 
-def _places(
-    prepared: Prepared, bands: Bands, device: Device | None, convention: str
-) -> list[int]:
-    """Return the band of each record, by its coordinate."""
-    edges = [b.value for b in bands.segmentation.boundaries]
-    result = []
-    for o in prepared.observations:
-        value = o.frequency if bands.coordinate == "frequency" else o.speed
-        if bands.coordinate == "dean" and device is not None:
-            value *= dean_per_speed(device, convention=convention)
-        result.append(int(np.searchsorted(edges, value)))
-    return result
-
-
-def _terms(judgement: Judgement, dictionary: Dictionary) -> tuple[TermEstimate, ...]:
-    ids = judgement.support.ids
-    terms = fitted_terms(judgement.fit, dictionary)
-    positions = [i for i, identifier in enumerate(ids) if identifier != DELAY]
-    spread = judgement.uncertainty
-    result = []
-    for term, position in zip(terms, positions, strict=True):
-        shapes = {}
-        if position < len(judgement.support.free):
-            name = term.term.parameters[0].name
-            low, high = spread.shape_intervals[position]
-            shapes[name] = (float(low), float(high))
-        low, high = spread.intervals[position]
-        result.append(
-            TermEstimate(
-                term, float(spread.std_errors[position]), (float(low), float(high)), shapes
-            )
+def _nuisance(bands: Sequence[StudyBand]) -> tuple[Nuisance, ...]:
+    """Return what sensors do to the force: the channels are the same in all bands."""
+    return tuple(
+        Nuisance(
+            e.term.fitted.id, e.term.fitted.coefficient, e.term.interval, e.term.fitted.unit
         )
-    return tuple(result)
-
-
-def _nuisance(judgements: Sequence[Judgement], delay: float) -> tuple[Nuisance, ...]:
-    """Return the sensor's artefacts: one delay for all, since the channels are the same."""
-    result = []
-    if delay or any(DELAY in j.support.ids for j in judgements):
-        steps, weights = zip(*(_delay_step(j) for j in judgements), strict=True)
-        weight = sum(weights)
-        value = delay + sum(s * w for s, w in zip(steps, weights, strict=True)) / weight
-        half = 2.0 / float(np.sqrt(weight))
-        result.append(Nuisance(DELAY, value, (value - half, value + half), "s"))
-    for judgement in judgements:
-        if "force-offset" in judgement.support.ids:
-            i = judgement.support.ids.index("force-offset")
-            low, high = judgement.uncertainty.intervals[i]
-            value = float(judgement.fit.coefficients[i])
-            result.append(Nuisance("force-offset", value, (float(low), float(high)), "N"))
-    return tuple(result)
-
-
-def _delay_step(judgement: Judgement) -> tuple[float, float]:
-    """Return the delay (s) left beside a band's other terms, and its inverse variance."""
-    triangle = judgement.engine.triangle
-    ids = judgement.support.ids
-    others = judgement.fit.weights[:, [i for i, name in enumerate(ids) if name != DELAY]]
-    columns = triangle.columns @ others
-    norms = np.linalg.norm(columns, axis=0)
-    q, _ = np.linalg.qr(columns / np.where(norms > 0.0, norms, 1.0))
-    both = np.column_stack([triangle.columns[:, -1], triangle.target])
-    column, target = (both - q @ (q.T @ both)).T
-    power = max(float(column @ column), 1e-300)
-    return float(column @ target) / power, power
-
-
-def _band(
-    index: int,
-    bands: Bands,
-    prepared: Prepared,
-    model: SegmentedModel,
-    accuracies: Sequence[Accuracy],
-    place: Sequence[int],
-) -> StudyBand:
-    judgement = bands.judgements[index]
-    edges = _edges(bands)
-    inside = [
-        a
-        for a, b in zip(accuracies, place, strict=True)
-        if b == index and not a.observation.held_out
-    ] or [a for a in accuracies if not a.observation.held_out]
-    frequencies = [a.observation.frequency for a in inside]
-    probability = judgement.probabilities[judgement.structure]
-    others = sorted(
-        ((s, p) for s, p in judgement.probabilities.items() if p >= OPEN),
-        key=lambda item: -item[1],
+        for e in bands[0].extras
+        if e.term.fitted.term.of_channel
     )
-    return StudyBand(
-        lower=edges[index],
-        upper=edges[index + 1],
-        lower_hz=min(frequencies),
-        upper_hz=max(frequencies),
-        records=tuple(a.observation.file for a in inside),
-        family=family_of(judgement.support.ids),
-        structure=judgement.structure,
-        terms=_terms(judgement, prepared.dictionary),
-        error_percent=_of_peak(inside),
-        relative_error_percent=pooled_percent(inside),
-        noise_percent=noise_percent(inside),
-        probability=probability,
-        equivalents=tuple(others),
-    )
-
-
-def _of_peak(accuracies: Sequence[Accuracy]) -> float:
-    error = sum(a.error_power for a in accuracies)
-    return 100.0 * float(np.sqrt(error / max(sum(a.peak**2 for a in accuracies), 1e-300)))
 
 
 def _boundary(
-    boundary: Boundary,
-    bands: Bands,
+    end: Boundary,
+    lower: int,
+    answer: Found,
     device: Device | None,
     convention: str,
-    prepared: Prepared,
-    *,
-    first: bool,
+    scale: float,
 ) -> StudyBoundary:
-    position = boundary.position
-    order = bands.segmentation.order
-    pair = [prepared.fitted[int(order[position + s])] for s in (-1, 0)]
-    frequency = float(np.sqrt(pair[0].frequency * pair[1].frequency))
-    change = bands.transition if first else None
-    low, high = boundary.interval
-    if change is not None:
-        low, high = min(low, change.interval[0]), max(high, change.interval[1])
-    scale = 1.0
-    if bands.coordinate == "dean" and device is not None:
-        scale = dean_per_speed(device, convention=convention)
-    speed = None if bands.coordinate == "frequency" else boundary.value / scale
+    banded = answer.banded
+    units = answer.search.space.sheet.units
+    values = answer.search.coordinates[banded.coordinate]
+    below = [u for u, s in zip(range(len(units)), banded.shares[lower], strict=True) if s > 0.5]
+    above = [u for u, s in zip(range(len(units)), banded.shares[lower + 1], strict=True) if s > 0.5]
+    pair = max(below, key=lambda u: values[u]), min(above, key=lambda u: values[u])
+    frequency = float(np.sqrt(units[pair[0]].frequency * units[pair[1]].frequency))
+    by_frequency = banded.coordinate == "frequency"
+    speed = None if by_frequency else end.value
     dean, dean_interval = None, None
-    if device is not None and speed is not None:
+    if device is not None and not by_frequency:
         per_speed = dean_per_speed(device, convention=convention)
-        dean = speed * per_speed
-        dean_interval = (low / scale * per_speed, high / scale * per_speed)
+        dean = end.value * per_speed
+        dean_interval = (end.interval[0] * per_speed, end.interval[1] * per_speed)
     return StudyBoundary(
-        coordinate=boundary.value,
-        bracket=boundary.bracket,
-        interval=(low, high),
+        coordinate=scale * end.value,
+        bracket=(scale * end.bracket[0], scale * end.bracket[1]),
+        interval=(scale * end.interval[0], scale * end.interval[1]),
         speed=speed,
-        frequency_hz=boundary.value if bands.coordinate == "frequency" else frequency,
+        frequency_hz=end.value if by_frequency else frequency,
         dean=dean,
         dean_interval=dean_interval,
-        width=None if change is None else change.width,
+        width=end.width,
     )
 
 
+def _exponent(answer: Found) -> AmplitudeExponent | None:
+    """Return how the lowest boundary follows the amplitude."""
+    banded, units = answer.banded, answer.search.space.sheet.units
+    inside = np.flatnonzero(banded.shares[0] + banded.shares[1] > 0.0)
+    frequency = np.array([units[u].frequency for u in inside])
+    amplitude = np.array([units[u].amplitude for u in inside])
+
+    def evidence(upper: NDArray[np.bool_]) -> Array:
+        whole = np.zeros((len(upper), len(units)), dtype=bool)
+        whole[:, inside] = upper
+        return line_evidence(answer.search, banded, whole)
+
+    return amplitude_exponent(frequency, amplitude, evidence)
+
+
 def _dean(
-    bands: Bands,
     boundaries: Sequence[StudyBoundary],
+    exponent: AmplitudeExponent | None,
     device: Device | None,
     options: StudyOptions,
 ) -> DeanCheck:
@@ -271,39 +203,42 @@ def _dean(
         if first.speed is not None:
             scale = first.coordinate / first.speed
             place = (first.speed, (first.interval[0] / scale, first.interval[1] / scale))
-        elif bands.exponent is not None:
-            low, high = bands.exponent.speed
+        elif exponent is not None:
+            low, high = exponent.speed
             place = (float(np.sqrt(low * high)), (low, high))
     return check_dean(
         device,
         place,
-        bands.exponent,
+        exponent,
         convention=options.convention,
         criterion=options.criterion,
     )
 
 
 def _figures(
-    bands: Bands,
     prepared: Prepared,
+    answer: Found,
+    bands: Sequence[StudyBand],
     accuracies: Sequence[Accuracy],
     place: Sequence[int],
     device: Device | None,
 ) -> StudyFigureData:
     curves = tuple(
-        record_curves(a, band=b, structure=bands.judgements[b].structure, device=device)
+        record_curves(a, band=b, structure=bands[b].structure, device=device)
         for a, b in zip(accuracies, place, strict=True)
     )
     probabilities = tuple(
-        StructureProbability(b, name, judgement.probabilities[name])
-        for b, judgement in enumerate(bands.judgements)
-        for name in STRUCTURES
+        StructureProbability(b, core.name, core_probabilities(answer, b).get(core.name, 0.0))
+        for b in range(len(bands))
+        for core in CORES
     )
     baselines = tuple(
-        answer
-        for b, judgement in enumerate(bands.judgements)
-        for answer in baseline_answers(
-            relative_triangle(judgement.windows), prepared.dictionary, band=b
+        one
+        for b, band in enumerate(bands)
+        for one in baseline_answers(
+            [r for r in prepared.rows if r.file in band.records],
+            [t.fitted for t in band.terms if t.fitted.id == prepared.device.friction.id],
+            band=b,
         )
     )
     scale = {
@@ -317,6 +252,3 @@ def _figures(
         dean_per_speed_paper=scale["paper"],
         dean_per_speed_standard=scale["standard"],
     )
-
-
-__all__ = ["coordinate_values", "run_study"]

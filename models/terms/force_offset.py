@@ -28,4 +28,5 @@ TERM = Term(
     mistaken_for=("sensor-drift", "asymmetric-damping"),
     parameters=(ONLY,),
     starts=starts,
+    of_channel=True,
 )

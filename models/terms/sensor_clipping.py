@@ -70,4 +70,5 @@ TERM = Term(
     mistaken_for=("cavitation",),
     bounds=lambda shape: (0.0, 1.0),
     starts=starts,
+    of_channel=True,
 )

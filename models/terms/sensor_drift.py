@@ -57,4 +57,5 @@ TERM = Term(
     mistaken_for=("force-offset",),
     follows=lambda shape: "motion" if shape["over"] > 0.0 else "time",
     starts=starts,
+    of_channel=True,
 )

@@ -112,4 +112,5 @@ TERM = Term(
     follows=lambda shape: "time" if shape["settling_time"] > 0.0 else "motion",
     bounds=_bounds,
     starts=starts,
+    of_channel=True,
 )

@@ -130,6 +130,8 @@ class Term:
     """Order of the derivative of displacement that the column is; None for another column."""
     bounds: Callable[[Shape], tuple[float, float]] | None = None
     """What the coefficient lies between, by shape; None where only `nonnegative` bounds it."""
+    of_channel: bool = False
+    """True where it may belong to a measuring channel instead of the device."""
     needs: tuple[str, ...] = ()
     """Ids of terms without one of which it means nothing."""
     impacts: Callable[[Shape], bool] | None = None

@@ -84,4 +84,5 @@ TERM = Term(
     mistaken_for=("viscous-damping", "fractional-derivative", "series-compliance"),
     bounds=lambda shape: (0.0 if shape["filter_order"] > 0.0 else -np.inf, np.inf),
     starts=starts,
+    of_channel=True,
 )

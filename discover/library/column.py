@@ -1,0 +1,26 @@
+"""A term with its shape, as a feature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+PLAIN = (
+    "inertia",
+    "viscous-damping",
+    "quadratic-damping",
+    "stiffness",
+    "cubic-stiffness",
+    "force-offset",
+    "asymmetric-damping",
+)
+"""Ids of terms without a shape that has to be given."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """One fixed column: a term with its shape."""
+
+    id: str
+    """The term."""
+    shape: tuple[tuple[str, float], ...] = ()
+    """Shape parameters, SI."""

@@ -1,0 +1,140 @@
+"""Friction's curve as it was found: which curves make it, and over what length or speed it turns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from discover.posterior.assess import Assessed, Assessor
+from discover.posterior.covariance import Sizes
+from discover.posterior.metric import curve_given
+from discover.posterior.space import Part
+from discover.regression.best_subset import best_subsets
+from models.checks import Array
+from models.constitutive import FittedTerm
+
+_MOST = 3  # curves that a model is given
+_ENOUGH = 0.05  # of a row's noise, that these may leave of the whole curve
+
+
+@dataclass(frozen=True)
+class Reversal:
+    """Friction by its curve."""
+
+    terms: tuple[FittedTerm, ...]
+    """Few curves that together make it."""
+    follows: str
+    """"path" where it turns over a displacement, "motion" over a speed."""
+    sure: float
+    """Probability of that."""
+    size: float
+    """m, or m/s: of the curve alone that fits best."""
+    interval: tuple[float, float]
+    """95 %."""
+    differs: float
+    """Standard deviation between records, over the friction."""
+
+
+def reversal_of(assessor: Assessor, assessed: Assessed) -> Reversal | None:
+    """Return friction as it was found; None where a model has none, or one of its own curve.
+
+    Parameters
+    ----------
+    assessor : Assessor
+        Of the records.
+    assessed : Assessed
+        The model.
+    """
+    curve, own = assessor.friction, assessor.curve_of(assessed.model)
+    if curve is None:
+        return None
+    at = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == curve.id]
+    if own is None or len(at) != 1:
+        return None
+    space = assessor.space
+    sizes = assessed.place.sizes(space.own_unit)
+    main = assessed.model.terms[at[0]].fitted
+    left = space.sheet.target - assessed.local.force
+    departing, _ = curve_given(space, sizes, left, own, assessed.judged.scale)
+    plain = assessor.evaluator.unit(main)
+    columns = space.columns[:, curve.columns]
+    whole = np.concatenate([columns[:, :1], columns[:, 1:] + columns[:, :1]], axis=1)
+    places = {tuple(t.shape.items()): k for k, t in enumerate(curve.terms)}
+    total = main.coefficient * plain
+    for w, t in zip(departing, own.terms, strict=True):
+        total = total + w * (whole[:, places[tuple(t.shape.items())]] - whole[:, 0])
+    terms = _few(whole, total, curve)
+    without = left + main.coefficient * plain
+    follows, sure, size, interval = _turning(assessor, sizes, without, whole, curve)
+    friction = max(sum(abs(t.coefficient) for t in terms), 1e-300)
+    return Reversal(terms, follows, sure, size, interval, sizes.friction / friction)
+
+
+def _few(whole: Array, total: Array, curve: Part) -> tuple[FittedTerm, ...]:
+    """Return the fewest curves, with positive shares, that leave next to nothing of the whole."""
+    flat = whole.transpose(1, 0, 2).reshape(whole.shape[1], -1)
+    goal = total.ravel()
+    every = range(flat.shape[0])
+    path = best_subsets(flat.T, goal, max_terms=_MOST, nonnegative=every, keep=1)
+    chosen = None
+    for size in range(1, _MOST + 1):
+        best = path.best(size)
+        if best is None:
+            continue
+        chosen = best
+        if best.misfit < _ENOUGH * goal.size:
+            break
+    if chosen is None:
+        return (FittedTerm(curve.id, 0.0, curve.terms[0].shape),)
+    return tuple(
+        FittedTerm(curve.id, float(c), curve.terms[i].shape)
+        for i, c in zip(chosen.indices, chosen.coefficients, strict=True)
+    )
+
+
+def _turning(
+    assessor: Assessor, sizes: Sizes, left: Array, whole: Array, curve: Part
+) -> tuple[str, float, float, tuple[float, float]]:
+    """Return what friction turns over, how surely, and over how much, from each curve alone."""
+    space = assessor.space
+    here = space.given(sizes)
+    stacked = np.concatenate([whole, left[:, None]], axis=1)
+    _, gram = here.beside(np.zeros(0, dtype=int), stacked)
+    power = np.maximum(np.diagonal(gram)[:-1], 1e-300)
+    size = space.sheet.scale(whole)
+    grown = 1.0 + size**2 * power
+    values = 0.5 * (size * gram[:-1, -1]) ** 2 / grown - 0.5 * np.log(grown)
+    kinds: dict[str, list[int]] = {}
+    widths: list[float] = []
+    for k, t in enumerate(curve.terms):
+        own = _width(t)
+        widths.append(own)
+        kinds.setdefault(t.term.remembers(t.shape), []).append(k)
+    means = {
+        kind: float(logsumexp(values[some])) - float(np.log(len(some)))
+        for kind, some in kinds.items()
+    }
+    best = max(means, key=lambda kind: means[kind])
+    sure = float(np.exp(means[best] - logsumexp(list(means.values()))))
+    some = [k for k in kinds[best] if widths[k] > 0.0] or kinds[best]
+    chances = np.exp(values[some] - logsumexp(values[some]))
+    order = np.argsort([widths[k] for k in some])
+    sorted_widths = np.array([widths[k] for k in some])[order]
+    total = np.cumsum(chances[order])
+    low = float(sorted_widths[np.searchsorted(total, 0.025)])
+    high = float(sorted_widths[min(int(np.searchsorted(total, 0.975)), order.size - 1)])
+    top = float(np.array([widths[k] for k in some])[int(chances.argmax())])
+    half = float(np.sqrt(2.0))  # curves are a factor of two apart
+    return best, sure, top, (low / half, high * half)
+
+
+def _width(fitted: FittedTerm) -> float:
+    """Return the shape parameter, with a unit, that a curve has beside its limits; 0 for none."""
+    named = {p.name for p in fitted.term.parameters if p.unit and p.fitted}
+    values = [v for n, v in fitted.shape.items() if n in named and v > 0.0]
+    return values[0] if values else 0.0
+
+
+

@@ -1,0 +1,62 @@
+"""How surely a model's numbers are known: their posterior, over the sizes of what it leaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from discover.posterior.assess import Assessed, Assessor
+from discover.posterior.local import judged
+from discover.posterior.model import Number
+from models.checks import Array
+
+_LEAST = 0.01  # of the posterior, from which sizes count
+
+
+@dataclass(frozen=True)
+class Spread:
+    """The posterior of a model's numbers, as a normal one."""
+
+    numbers: tuple[Number, ...]
+    """P of them."""
+    mean: Array
+    """(P,)."""
+    covariance: Array
+    """(P, P)."""
+
+    @property
+    def deviation(self) -> Array:
+        """(P,) standard deviations."""
+        return np.asarray(np.sqrt(np.maximum(np.diagonal(self.covariance), 0.0)))
+
+    def interval(self, place: int, low: float, high: float) -> tuple[float, float]:
+        """Return the 95 % interval of a number that lies between bounds."""
+        half = 1.96 * float(self.deviation[place])
+        middle = float(self.mean[place])
+        return float(np.clip(middle - half, low, high)), float(np.clip(middle + half, low, high))
+
+
+def spread_of(assessor: Assessor, assessed: Assessed) -> Spread:
+    """Return the posterior of a model's numbers: a mixture over the sizes that were visited."""
+    local = assessed.local
+    start = np.array([local.model.value(n) for n in local.numbers])
+    shaped = np.array([n.shape is not None for n in local.numbers])
+    places = list(assessed.visited)
+    values = np.array([assessed.visited[p] for p in places])
+    weights = np.exp(values - logsumexp(values))
+    kept = [i for i in np.argsort(-weights) if weights[i] >= _LEAST] or [int(weights.argmax())]
+    share = weights[kept] / weights[kept].sum()
+    means, covariances = [], []
+    curve = assessor.curve_of(local.model)
+    for i in kept:
+        sizes = places[i].sizes(assessor.space.own_unit)
+        found = judged(assessor.space, local, sizes, curve).solved
+        means.append(np.where(shaped, start + found.mean, found.mean))
+        covariances.append(found.covariance)
+    mean = np.einsum("w,wp->p", share, means)
+    between = np.array(means) - mean
+    whole = np.einsum("w,wpq->pq", share, covariances)
+    whole = whole + np.einsum("w,wp,wq->pq", share, between, between)
+    return Spread(local.numbers, mean, whole)

@@ -1,1 +1,0 @@
-"""Which structure: evidence, prediction of left-out records, and what matters."""

@@ -1,0 +1,103 @@
+"""What holds in each band, in numbers: the model, its terms with intervals, what it leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from discover.bands.extras import Found, assessor_of, composite
+from discover.posterior.assess import Assessed, Assessor
+from discover.posterior.model import Composite, Number
+from discover.posterior.reversal import Reversal, reversal_of
+from discover.posterior.spread import Spread, spread_of
+from discover.study.prepare import Prepared
+from discover.study.result import TermEstimate
+from models.constitutive import FittedTerm, ForceModel
+
+
+@dataclass(frozen=True)
+class Estimates:
+    """The bands' model as it was found."""
+
+    assessor: Assessor
+    """Of the records."""
+    assessed: Assessed
+    """The model, friction by its whole curve."""
+    spread: Spread
+    """Posterior of its numbers."""
+    reversal: Reversal | None
+    """Friction's curve; None without friction."""
+    terms: tuple[tuple[TermEstimate, ...], ...]
+    """Of each band: its structure's, what the device has besides, and friction."""
+
+    @property
+    def models(self) -> tuple[ForceModel, ...]:
+        """Of each band."""
+        return tuple(ForceModel(tuple(t.fitted for t in terms)) for terms in self.terms)
+
+
+def estimated(prepared: Prepared, found: Found) -> Estimates:
+    """Return what holds in each band, in numbers."""
+    assessor = assessor_of(prepared.device)
+    assessed = composite(prepared.device, found)
+    spread = spread_of(assessor, assessed)
+    reversal = reversal_of(assessor, assessed) if prepared.device.with_friction else None
+    shares = found.banded.shares
+    by_band: list[list[TermEstimate]] = [[] for _ in range(found.banded.bands)]
+    for place, placed in enumerate(assessed.model.terms):
+        whole = reversal is not None and placed.fitted.id == prepared.device.friction.id
+        if whole and reversal is not None:
+            own = _friction(reversal, assessed.model, spread, place)
+        else:
+            own = [_estimate(assessed.model, spread, place)]
+        for band, terms in enumerate(by_band):
+            if placed.share is None or np.allclose(placed.share, shares[band]):
+                terms += own
+    return Estimates(
+        assessor, assessed, spread, reversal, tuple(tuple(terms) for terms in by_band)
+    )
+
+
+def _estimate(model: Composite, spread: Spread, place: int) -> TermEstimate:
+    """Return a term with its intervals."""
+    fitted = model.terms[place].fitted
+    low, high = fitted.term.coefficient_bounds(fitted.shape)
+    at = _place(spread, Number(place, None))
+    if at is None:
+        return TermEstimate(fitted, 0.0, (fitted.coefficient,) * 2, {})
+    shapes = {}
+    for p in fitted.term.parameters:
+        own = _place(spread, Number(place, p.name))
+        if own is not None:
+            upper = p.upper if not p.scaled_by else np.inf
+            shapes[p.name] = spread.interval(own, p.lower if not p.scaled_by else 0.0, upper)
+    return TermEstimate(
+        fitted, float(spread.deviation[at]), spread.interval(at, low, high), shapes
+    )
+
+
+def _place(spread: Spread, number: Number) -> int | None:
+    return spread.numbers.index(number) if number in spread.numbers else None
+
+
+def _friction(
+    reversal: Reversal, model: Composite, spread: Spread, place: int
+) -> Sequence[TermEstimate]:
+    """Return the few curves that make friction; how surely their sum is known, they share."""
+    whole = _estimate(model, spread, place)
+    total = sum(t.coefficient for t in reversal.terms) or 1.0
+    result = []
+    for t in reversal.terms:
+        share = t.coefficient / total
+        low, high = (share * v for v in whole.interval)
+        middle = share * whole.fitted.coefficient
+        half = max(high - middle, middle - low)
+        result.append(
+            TermEstimate(
+                FittedTerm(t.id, t.coefficient, t.shape), abs(share) * whole.std_error,
+                (max(t.coefficient - half, 0.0), t.coefficient + half), {},
+            )
+        )
+    return result
