@@ -10,6 +10,7 @@ from scipy.special import logsumexp
 
 from discover.bands.divisions import FEWEST, refined, sharp
 from discover.bands.variants import as_choice
+from discover.posterior.assess import is_quiet
 from discover.posterior.climb import Place, climb
 from discover.posterior.space import Part, Space
 from discover.posterior.structures import (
@@ -25,7 +26,6 @@ from models.checks import Array, Indices
 MOST_BANDS = 5
 _ROUNDS = 4  # of dividing and climbing
 _LOG_2 = float(np.log(2.0))
-_DOUBT = 3.0  # nats, within which a model that explains all but noise is not ruled out
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ class BandSearch:
             if there == place:
                 break
             place, start = there, begun
-        top = max(v for v, _, _ in alone.values())
+        self._seen(self.space.quiet, shares[best], alone[place][2].best[0], alone)
         total = float(logsumexp([v for v, _, _ in alone.values()])) + others + prior
         variants = alone[place][2].best[0]
         return Banded(
@@ -185,7 +185,7 @@ class BandSearch:
             value=total,
             place=place,
             scale=scale,
-            quiet=self._seen(self.space.quiet, shares[best], variants, alone) > top - _DOUBT,
+            quiet=is_quiet({p: v for p, (v, _, _) in alone.items()}),
         )
 
     def _seen(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -14,8 +15,10 @@ from discover.posterior.model import Composite, Evaluator
 from discover.posterior.space import Part, Space, departures
 
 _ROUNDS = 3  # of fitting and climbing
-_DOUBT = 3.0
-"""Nats, within which a model that explains all but noise is not ruled out."""
+_SMALL = -9
+"""Power of two, of the force: what is left below it is nothing that a model need explain."""
+_POSSIBLE = 0.05
+"""Probability from which it may be that no more is left."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,11 @@ class Assessor:
         """Departures of friction's curve."""
         return None if self.friction is None else departures(self.friction, path=self.path)
 
+    @cached_property
+    def coarse(self) -> Evaluator:
+        """Evaluator of what may join a model, where a quarter of a cycle's points is enough."""
+        return Evaluator(self.space.sheet, self.space.scales, coarse=True)
+
     def assess(
         self, model: Composite, start: Place, *, refit: bool = True, iterations: int = 12
     ) -> Assessed:
@@ -81,10 +89,10 @@ class Assessor:
             stays, place = found == place, found
             if stays:
                 break
-        quiet = self._at(local, visited, self.space.quiet) > max(visited.values()) - _DOUBT
+        self._at(local, visited, self.space.quiet)
         best = judged(self.space, local, place.sizes(self.space.own_unit), self.curve_of(model))
         return Assessed(
-            local, place, float(logsumexp(list(visited.values()))), best, visited, quiet
+            local, place, float(logsumexp(list(visited.values()))), best, visited, is_quiet(visited)
         )
 
     def _at(self, local: Local, visited: dict[Place, float], place: Place) -> float:
@@ -101,3 +109,11 @@ class Assessor:
             return None
         name = self.curve.id
         return self.curve if any(t.fitted.id == name for t in model.terms) else None
+
+
+def is_quiet(visited: Mapping[Place, float]) -> bool:
+    """Tell whether it may be that no more than noise is left, from log evidence by sizes, nats."""
+    small = [v for p, v in visited.items() if p.remainder <= _SMALL and p.loudest <= _SMALL]
+    if not small:
+        return False
+    return bool(logsumexp(small) - logsumexp(list(visited.values())) > np.log(_POSSIBLE))

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 
 import numpy as np
 
-from discover.posterior.space import Space
+from discover.posterior.model import Composite, Evaluator
 from discover.posterior.weigh import Trial, Trials
-from discover.rows import RecordRows
-from discover.rows.columns import Changes, force_columns
-from models.constitutive import FittedTerm, ForceModel
+from models.constitutive import FittedTerm
 from models.motion import sine_motion
 from models.terms import TERMS, Scales, Start, Term
 from models.terms.trials import trial_shapes, trial_size
@@ -35,9 +33,10 @@ def starts_of(term: Term, scales: Scales) -> list[Start]:
 
 
 def trials_of(
-    space: Space,
+    scales: Scales,
+    evaluator: Evaluator,
     ids: Collection[str],
-    model: ForceModel,
+    model: Composite,
     *,
     among: int,
     expected: float = EXPECTED,
@@ -46,23 +45,25 @@ def trials_of(
 
     Parameters
     ----------
-    space : Space
-        That a model's columns are in.
+    scales : Scales
+        What the records cover.
+    evaluator : Evaluator
+        Of their rows.
     ids : collection of str
         Terms that are tried; those whose `needs` the model lacks are left out.
-    model : ForceModel
+    model : Composite
         What changes of motion or force act on.
     among : int
         Number of terms that may join in all.
     expected : float
         Number of terms that are expected beforehand.
     """
-    there = {t.id for t in model.terms}
+    there = {p.fitted.id for p in model.terms}
     entries: list[Trial] = []
     flat: list[FittedTerm] = []
     chosen = [TERMS[i] for i in ids if not set(TERMS[i].needs) - there]
     for term in chosen:
-        starts = starts_of(term, space.scales)
+        starts = starts_of(term, scales)
         prior = float(np.log(expected / among) - np.log(len(starts)))
         for start in starts:
             probe = start.probe if term.transform is not None else 1.0
@@ -70,16 +71,4 @@ def trials_of(
             places = np.arange(len(flat), len(flat) + len(terms))
             entries.append(Trial(terms, places, prior))
             flat.extend(terms)
-    blocks = [_columns(r.coarse, flat, model) for r in space.sheet.rows]
-    return Trials(tuple(entries), space.sheet.stack(blocks))
-
-
-def _columns(rows: RecordRows, terms: Sequence[FittedTerm], model: ForceModel) -> np.ndarray:
-    adding = [k for k, t in enumerate(terms) if t.term.acts == "force"]
-    changing = [k for k, t in enumerate(terms) if t.term.acts != "force"]
-    result = np.zeros((len(terms), rows.target.size))
-    if adding:
-        result[adding] = force_columns(rows, [terms[k] for k in adding])
-    if changing:
-        result[changing] = Changes(rows, model).columns([terms[k] for k in changing])
-    return result
+    return Trials(tuple(entries), evaluator.trials(model, flat))

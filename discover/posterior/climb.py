@@ -29,6 +29,16 @@ class Place:
     """Powers of `STEP` of the remainder, of own friction, and of each kind of independent error:
     over the force (friction: over what would make the whole of it)."""
 
+    @property
+    def remainder(self) -> int:
+        """Power of the remainder."""
+        return self.powers[0]
+
+    @property
+    def loudest(self) -> int:
+        """Power of the greatest independent error."""
+        return max(self.powers[2:])
+
     @classmethod
     def start(cls, kinds: int) -> Place:
         """Return where a search begins, with so many kinds of independent error."""

@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.catalogue import trials_of
 from discover.posterior.weigh import Gain, gains
-from models.constitutive import FittedTerm, ForceModel
+from models.constitutive import FittedTerm
 from models.terms import TERMS
 
 _NAMES = 5  # that are fitted, of those that gain most
@@ -90,8 +90,7 @@ def _tried(
     assessor: Assessor, now: Assessed, ids: Sequence[str], among: int
 ) -> list[Candidate]:
     space = assessor.space
-    whole = ForceModel(tuple(p.fitted for p in now.model.terms))
-    trials = trials_of(space, ids, whole, among=among)
+    trials = trials_of(space.scales, assessor.coarse, ids, now.model, among=among)
     if not trials.entries:
         return []
     curve = assessor.curve_of(now.model)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from discover.posterior.sheet import Sheet
-from discover.rows import RecordRows, force_rows
+from discover.rows import RecordForces
 from discover.rows.columns import force_columns, moved
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
@@ -120,9 +120,8 @@ class Evaluator:
     def __init__(self, sheet: Sheet, scales: Scales, *, coarse: bool = False) -> None:
         self._sheet = sheet
         self._scales = scales
-        self._rows: tuple[RecordRows, ...] = tuple(
-            r.coarse if coarse else r for r in sheet.rows
-        )
+        self._rows = tuple(r.coarse if coarse else r for r in sheet.rows)
+        self._forces = tuple(RecordForces(r) for r in self._rows)
         self._known: dict[tuple[object, ...], Array] = {}
 
     def unit(self, fitted: FittedTerm) -> Array:
@@ -133,6 +132,25 @@ class Evaluator:
             blocks = [force_columns(r, [one]) for r in self._rows]
             self._known[key] = self._sheet.stack(blocks)[:, 0]
         return self._known[key]
+
+    def trials(self, model: Composite, terms: Sequence[FittedTerm]) -> Array:
+        """Return the rows (U, K, R) of terms that may join a model, over their coefficients.
+
+        Terms that change the motion or the force do so to the model's force in each record.
+        """
+        blocks = []
+        first = {u.record: i for i, u in reversed(list(enumerate(self._sheet.units)))}
+        adding = [k for k, t in enumerate(terms) if t.term.acts == "force"]
+        changing = [k for k, t in enumerate(terms) if t.term.acts != "force"]
+        for place, (rows, forces) in enumerate(zip(self._rows, self._forces, strict=True)):
+            whole = np.zeros((len(terms), rows.target.size))
+            if adding:
+                whole[adding] = force_columns(rows, [terms[k] for k in adding])
+            if changing:
+                here = model.in_unit(first[place])
+                whole[changing] = forces.changes(here, [terms[k] for k in changing])
+            blocks.append(whole)
+        return self._sheet.stack(blocks)
 
     def force(self, model: Composite) -> Array:
         """Return a model's rows (U, R)."""
@@ -153,7 +171,7 @@ class Evaluator:
             key = (unit.record, tuple((t.id, t.coefficient, *t.shape.items()) for t in here.terms))
             if key not in known:
                 with np.errstate(over="ignore", invalid="ignore"):  # a joint may shake itself apart
-                    known[key] = force_rows(self._rows[unit.record], here)
+                    known[key] = self._forces[unit.record].of_model(here)
             own = known[key]
             part = own[None][:, unit.part]
             blocks.append(part if unit.basis is None else part @ unit.basis)

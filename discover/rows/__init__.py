@@ -12,7 +12,7 @@ from discover.rows.accuracy import (
     unexplained,
 )
 from discover.rows.band_rows import band_rows
-from discover.rows.force import force_at_samples, force_rows
+from discover.rows.force import RecordForces, force_at_samples, force_rows
 from discover.rows.record_rows import RecordRows
 from discover.rows.sine_rows import sine_rows
 
@@ -24,6 +24,7 @@ def record_rows(observation: Observation) -> RecordRows:
 
 __all__ = [
     "Accuracy",
+    "RecordForces",
     "RecordRows",
     "Unexplained",
     "accuracy",

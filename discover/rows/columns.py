@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.rows.force import force_rows
+from discover.rows.force import RecordForces
 from discover.rows.record_rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
@@ -66,28 +66,9 @@ def _force(fitted: FittedTerm, motion: Motion) -> Array:
     return fitted.coefficient * fitted.term.column(motion, fitted.shape)
 
 
-@dataclass(frozen=True)
-class Changes:
-    """What changes of motion or of force do to a model's force, tried one by one."""
-
-    rows: RecordRows
-    """The record."""
-    model: ForceModel
-    """What is changed."""
-
-    def columns(self, terms: Sequence[FittedTerm]) -> Array:
-        """Return the rows (K, R) of each change, over its coefficient."""
-        before = force_rows(self.rows, self.model)
-        found = []
-        for t in terms:
-            whole = ForceModel((*self.model.terms, t))
-            with np.errstate(over="ignore", invalid="ignore"):  # a joint may shake itself apart
-                change = (force_rows(self.rows, whole) - before) / t.coefficient
-            found.append(np.where(np.isfinite(change), change, 0.0))
-        return np.array(found).reshape(len(terms), before.size)
-
-
-def moved(term: Term, shape: dict[str, float], name: str, scales: Scales) -> tuple[dict, float]:
+def moved(
+    term: Term, shape: dict[str, float], name: str, scales: Scales
+) -> tuple[dict[str, float], float]:
     """Return a shape with one parameter a little further inside its bounds, and the step."""
     parameter = next(p for p in term.parameters if p.name == name)
     size = scales.size(parameter.scaled_by)
@@ -113,7 +94,8 @@ class Behind:
     def __call__(self, rows: RecordRows, terms: Sequence[FittedTerm]) -> Array:
         """Return the rows (K, R) of terms in a record, with their coefficients."""
         model = self.models[self.places[rows.file]]
-        before = force_rows(rows, model)
+        forces = RecordForces(rows)
+        before = forces.of_model(model)
         size = float(np.linalg.norm(before)) or 1.0
         plain = force_columns(rows, [t for t in terms if t.term.acts == "force"])
         adding = iter(plain)
@@ -128,7 +110,7 @@ class Behind:
             else:
                 step = _STEP
                 whole = _grown(model, t, step)
-            found[k] = (force_rows(rows, whole) - before) / step
+            found[k] = (forces.of_model(whole) - before) / step
         return found
 
 

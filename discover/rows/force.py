@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,8 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
 from models.terms.between_tests import ONLY
+
+_TOTALS = 4  # sums of terms that are kept: a joint's device is fitted once to each
 
 
 def drifts(fitted: FittedTerm) -> bool:
@@ -69,14 +72,83 @@ def in_test(model: ForceModel, test: int) -> ForceModel:
 
 def force_rows(rows: RecordRows, model: ForceModel) -> Array:
     """Return a model's rows (R,) in a record."""
-    if rows.cycle is None or rows.cycle_rows is None:
-        return rows.of_motion(model.force(rows.motion))
-    whole = steady(model).force(rows.cycle)
-    result = np.asarray(whole @ rows.cycle_rows)
-    if any(drifts(t) for t in model.terms):
-        here = at_moments(whole, rows.motion.time, rows.observation.frequency)
-        result = result + rows.of_motion(_drifting(model, rows.motion, here))
-    return result
+    return RecordForces(rows).of_model(model)
+
+
+class RecordForces:
+    """Models' rows in one record. What a unit of a term adds is kept, the latest of them."""
+
+    def __init__(self, rows: RecordRows, *, most: int = 96) -> None:
+        self.rows = rows
+        self._motion = rows.motion if rows.cycle is None else rows.cycle
+        self._most = most
+        self._units: dict[Hashable, Array] = {}
+        self._totals: dict[Hashable, Array] = {}
+
+    def of_model(self, model: ForceModel) -> Array:
+        """Return a model's rows (R,)."""
+        whole = self._steady(model)
+        if self.rows.cycle_rows is None:
+            return self.rows.of_motion(whole)
+        result = np.asarray(whole @ self.rows.cycle_rows)
+        if any(drifts(t) for t in model.terms):
+            motion = self.rows.motion
+            here = at_moments(whole, motion.time, self.rows.observation.frequency)
+            result = result + self.rows.of_motion(_drifting(model, motion, here))
+        return result
+
+    def changes(self, model: ForceModel, terms: Sequence[FittedTerm]) -> Array:
+        """Return the rows (K, R) of changes of motion or force, each over its coefficient."""
+        before = self.of_model(model)
+        found = np.zeros((len(terms), before.size))
+        for k, t in enumerate(terms):
+            with np.errstate(over="ignore", invalid="ignore"):  # a joint may shake itself apart
+                change = self.of_model(ForceModel((*model.terms, t))) - before
+            if np.all(np.isfinite(change)):
+                found[k] = change / t.coefficient
+        return found
+
+    def _steady(self, model: ForceModel) -> Array:
+        """Return the force of what does not drift, on the cycle or at the samples."""
+        timed = self.rows.cycle is not None
+        kept = [t for t in model.terms if not (timed and drifts(t))]
+        adding = [t for t in kept if t.term.acts == "force"]
+        changing = tuple(t for t in kept if t.term.acts != "force")
+        total = self._total(adding)
+        if not changing:
+            return total
+
+        def force_of(motion: Motion) -> Array:
+            return total if motion is self._motion else ForceModel(tuple(adding)).added(motion)
+
+        return ForceModel(changing).changed(force_of, self._motion)
+
+    def _total(self, adding: Sequence[FittedTerm]) -> Array:
+        """Return the sum of what terms add; the same array where it is asked for again."""
+        key = tuple((t.id, t.coefficient, *t.shape.items()) for t in adding)
+        known = self._totals.get(key)
+        if known is None:
+            known = np.zeros_like(self._motion.displacement)
+            for t in adding:
+                known += t.coefficient * self._unit(t)
+            _keep(self._totals, key, known, most=_TOTALS)
+        return known
+
+    def _unit(self, fitted: FittedTerm) -> Array:
+        key = (fitted.id, *fitted.shape.items())
+        known = self._units.get(key)
+        if known is None:
+            if fitted.term.column is None:
+                raise ValueError(f"{fitted.id} adds no force")
+            known = fitted.term.column(self._motion, fitted.shape)
+            _keep(self._units, key, known, most=self._most)
+        return known
+
+
+def _keep(known: dict[Hashable, Array], key: Hashable, value: Array, *, most: int) -> None:
+    while len(known) >= most:
+        known.pop(next(iter(known)))
+    known[key] = value
 
 
 def force_at_samples(observation: Observation, model: ForceModel) -> Array:

@@ -1,13 +1,10 @@
-"""The Dean-number verdict from likelihoods whose boundary is stated."""
-
-from dataclasses import replace
+"""The Dean-number verdict from evidence whose boundary is stated."""
 
 import numpy as np
 import pytest
 
 from discover.dean import VERDICTS, amplitude_exponent, check_dean
 from models.device import Device
-from tests.discover.spectra import dictionary, window
 
 DEVICE = Device.preset("device-12")
 AMPLITUDES = (0.005, 0.01, 0.02)
@@ -24,71 +21,71 @@ def dean(speed, convention="paper"):
     return 800.0 * 0.01 * pipe / 0.027 * np.sqrt(0.005 / 0.1)
 
 
-def windows_of(plan):
-    space = dictionary("inertia", orders=None)
-    blank = window(space, np.ones(512), 0.01, 1.0, record=0)
-    return [
-        replace(blank, amplitude=a, frequency=f, speed=2.0 * np.pi * a * f, record=i)
-        for i, (a, f) in enumerate(plan)
-    ]
+def evidence(plan, k, *, at=0.7, nats=5.0):
+    """Return log evidence of divisions where each test on its own side of f = at (A / 10 mm)^k
+    speaks with so many nats.
+    """
+    above = np.array([f >= at * (a / 0.01) ** k for a, f in plan])
+
+    def of(upper):
+        return nats * np.count_nonzero(upper == above, axis=1).astype(float)
+
+    return of
 
 
-def likelihoods(plan, exponent, *, at=0.7, nats=5.0):
-    """Return log likelihoods that change hands at f = at (A / 10 mm)^k."""
-    side = np.array([f < at * (a / 0.01) ** exponent for a, f in plan])
-    return np.where(side, nats, 0.0), np.where(side, 0.0, nats)
+def exponent(plan, k, **options):
+    amplitude, frequency = np.array(plan).T
+    return amplitude_exponent(frequency, amplitude, evidence(plan, k, **options))
 
 
 @pytest.mark.parametrize("k", [-1.5, -1.0, -0.5, 0.0, 0.8])
 def test_the_amplitude_exponent_is_recovered(k):
-    found = amplitude_exponent(windows_of(PLAN), *likelihoods(PLAN, k))
+    found = exponent(PLAN, k)
     assert found.value == pytest.approx(k, abs=0.35)
 
 
 def test_intervals_hold_exponents_drawn_at_random():
     """Where the truth is drawn evenly, as the posterior assumes, 95 % must hold it."""
     rng = np.random.default_rng(0)
-    tests = windows_of(PLAN)
     held = 0
     for _ in range(120):
         k, at = rng.uniform(-2.0, 1.0), np.exp(rng.uniform(np.log(0.3), np.log(1.7)))
-        found = amplitude_exponent(tests, *likelihoods(PLAN, k, at=at))
+        found = exponent(PLAN, k, at=at)
         held += found.interval[0] <= k <= found.interval[1]
     assert 106 <= held <= 119  # 114, three standard deviations below
 
 
 def test_finer_plans_pin_the_exponent_down():
     fine = [(a, f) for a in AMPLITUDES for f in np.geomspace(0.1, 5.0, 60)]
-    wide = amplitude_exponent(windows_of(PLAN), *likelihoods(PLAN, -1.0))
-    tight = amplitude_exponent(windows_of(fine), *likelihoods(fine, -1.0))
+    wide = exponent(PLAN, -1.0)
+    tight = exponent(fine, -1.0)
     assert np.ptp(tight.interval) < 0.6 * np.ptp(wide.interval)
     assert tight.value == pytest.approx(-1.0, abs=0.08)
 
 
-def test_likelihoods_that_say_nothing_leave_the_exponent_open():
-    flat = np.zeros(len(PLAN))
-    found = amplitude_exponent(windows_of(PLAN), flat, flat)
+def test_evidence_that_says_nothing_leaves_the_exponent_open():
+    found = exponent(PLAN, -1.0, nats=0.0)
     assert found.interval[0] < -2.0
     assert found.interval[1] > 1.0
 
 
 def test_the_boundary_s_speed_is_that_of_the_stated_line():
-    found = amplitude_exponent(windows_of(PLAN), *likelihoods(PLAN, -1.0, at=0.7))
+    found = exponent(PLAN, -1.0, at=0.7)
     assert found.speed[0] < 2.0 * np.pi * 0.01 * 0.7 < found.speed[1]
 
 
 def test_one_amplitude_tells_nothing_of_the_exponent():
     plan = [(0.01, f) for f in FREQUENCIES] + [(0.0105, f) for f in FREQUENCIES]
-    assert amplitude_exponent(windows_of(plan), *likelihoods(plan, -1.0)) is None
+    assert exponent(plan, -1.0) is None
 
 
 def test_one_frequency_tells_nothing_of_the_exponent():
     plan = [(a, 0.7) for a in np.geomspace(0.002, 0.02, 8)]
-    assert amplitude_exponent(windows_of(plan), *likelihoods(plan, -1.0)) is None
+    assert exponent(plan, -1.0) is None
 
 
-def verdict(boundary, exponent, *, device=DEVICE, convention="paper"):
-    return check_dean(device, boundary, exponent, convention=convention, criterion=100.0)
+def verdict(boundary, follows, *, device=DEVICE, convention="paper"):
+    return check_dean(device, boundary, follows, convention=convention, criterion=100.0)
 
 
 def place(number, spread=1.3, convention="paper"):
@@ -98,7 +95,7 @@ def place(number, spread=1.3, convention="paper"):
 
 def exponent_of(k, plan=None):
     plan = plan or [(a, f) for a in AMPLITUDES for f in np.geomspace(0.1, 5.0, 40)]
-    return amplitude_exponent(windows_of(plan), *likelihoods(plan, k))
+    return exponent(plan, k)
 
 
 @pytest.mark.parametrize("convention", ["paper", "standard"])

@@ -8,7 +8,7 @@ import pytest
 from sklearn.base import clone
 
 from discover.library import InerterLibrary
-from discover.library.dictionary import Column
+from discover.library.column import Column
 from discover.regression import BestSubset
 from models.checks import InputError
 

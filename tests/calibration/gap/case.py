@@ -31,14 +31,24 @@ from tests.calibration.gap.second_set import (
     second_plan,
     second_seal,
 )
+from tests.calibration.gap.third_set import (
+    THIRD,
+    third_device,
+    third_noise,
+    third_plan,
+    third_seal,
+)
 
 RECORDS = 12
 SETS = ("first", "second")
+"""Sets of the kept table. "third" is run apart: ``python -m tests.calibration.gap.third_set``."""
 _FREQUENCIES = (0.3, 0.7, 1.5, 3.0, 6.0, 10.0)
 _AMPLITUDES = (0.003, 0.008, 0.02)
 _PAIR_SIZE = 0.1
 _ANOTHER_DAY = 500_000
-_STREAM = {"first": 7, "second": 23}
+_STREAM = {"first": 7, "second": 23, "third": 37}
+_OWN = {"second": SECOND, "third": THIRD}
+NOISE = {"second": (29, second_noise), "third": (43, third_noise)}
 
 
 @dataclass(frozen=True)
@@ -46,9 +56,9 @@ class Case:
     """What is hidden in one campaign."""
 
     kind: str
-    """Set: "first" or "second"."""
+    """Set: "first", "second" or "third"."""
     hidden: tuple[str, ...]
-    """Each as "id:form" of the first set or "id#place" of the second; empty for nothing."""
+    """Each as "id:form" of the first set or "id#place" of another; empty for nothing."""
     size: float
     """rms change of force over rms force, of each; 0 for nothing."""
     seed: int
@@ -63,7 +73,7 @@ class Case:
     def ids(self) -> tuple[str, ...]:
         """Of the catalogue; "outside" for what it has no name for."""
         names = tuple(
-            name.partition("#")[0] if self.kind == "second" else find_effect(name).id
+            find_effect(name).id if self.kind == "first" else name.partition("#")[0]
             for name in self.hidden
         )
         return tuple("outside" if name.startswith("outside") else name for name in names)
@@ -76,7 +86,7 @@ class Case:
                 result[find_effect(name)] = self.size
             else:
                 identifier, _, place = name.partition("#")
-                result[SECOND[identifier][int(place)]] = self.size
+                result[_OWN[self.kind][identifier][int(place)]] = self.size
         return result
 
 
@@ -95,10 +105,11 @@ def campaign(case: Case, *, clean: bool = False) -> Campaign:
     records = []
     for i, r in enumerate(measure(case, day=_ANOTHER_DAY if clean else 0)):
         force = r.force.copy()
-        if case.kind == "second":
-            own = np.random.default_rng([29, case.seed + (_ANOTHER_DAY if clean else 0), i])
+        if case.kind in NOISE:
+            stream, noise = NOISE[case.kind]
+            own = np.random.default_rng([stream, case.seed + (_ANOTHER_DAY if clean else 0), i])
             sampling = round(1.0 / (r.time[1] - r.time[0]))
-            force += second_noise(r.true_force, sampling, case.seed, own)
+            force += noise(r.true_force, sampling, case.seed, own)
         records.append(
             Record(
                 r.file, r.time, force, r.displacement.copy(),
@@ -109,7 +120,7 @@ def campaign(case: Case, *, clean: bool = False) -> Campaign:
 
 
 def measure(case: Case, *, day: int = 0) -> tuple[RigRecord, ...]:
-    """Return the rig's records of a case; those of the second set without their noise."""
+    """Return the rig's records of a case; beyond the first set, without their noise."""
     device, plan = _tested(case)
     chain = Chain() if case.kind == "first" else Chain(noise=0.0, hum=0.0)
     return run(
@@ -129,7 +140,8 @@ def seal_of(case: Case) -> Seal:
 
 def _seal(case: Case, device: Device) -> Seal:
     """Return how the seals of a device reverse, by the laws of the case's set."""
-    return draw_seal(device) if case.kind == "first" else second_seal(device)
+    draw = {"first": draw_seal, "second": second_seal, "third": third_seal}
+    return draw[case.kind](device)
 
 
 def _tested(case: Case) -> tuple[Device, Plan]:
@@ -138,6 +150,9 @@ def _tested(case: Case) -> tuple[Device, Plan]:
     if case.kind == "second":
         device = second_device(rng)
         return device, second_plan(device, rng)
+    if case.kind == "third":
+        device = third_device(rng)
+        return device, third_plan(device, rng)
     device = random_device(rng)
     points = list(
         sine_plan(device, frequencies=_FREQUENCIES, amplitudes=_AMPLITUDES, limits=Limits())
@@ -160,14 +175,13 @@ def single_cases(
                 f"{name}:{list(FORMS[name])[seed % len(FORMS[name])]}" for name in names
             ]
         else:
-            names = tuple(SECOND) if effects is None else tuple(effects)
+            own = _OWN[kind]
+            names = tuple(own) if effects is None else tuple(effects)
             forms = [
                 f"{name}#{place}"
                 for name in names
                 for place in (
-                    range(len(SECOND[name]))
-                    if name == "outside"
-                    else [seed % len(SECOND[name])]
+                    range(len(own[name])) if name == "outside" else [seed % len(own[name])]
                 )
             ]
         result += [Case(kind, (form,), size, seed) for form in forms for size in sizes]
@@ -186,7 +200,7 @@ def pair_cases(kind: str, seeds: Iterable[int]) -> list[Case]:
         rng = np.random.default_rng([41, _STREAM[kind], seed])
         names = []
         for name in rng.choice(list(CATALOGUE), size=2, replace=False):
-            count = len(FORMS[name] if kind == "first" else SECOND[name])
+            count = len(FORMS[name] if kind == "first" else _OWN[kind][name])
             place = int(rng.integers(count))
             first = f"{name}:{list(FORMS[name])[place]}" if kind == "first" else ""
             names.append(first or f"{name}#{place}")

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from discover.data_check.plan import Plan, SineTest, plan_of
+from discover.motion_fit import observe
 from discover.records import Campaign, Record
+from discover.rows import record_rows
 
 WIDE = ((0.5, 0.01), (1.0, 0.01), (2.0, 0.01), (2.0, 0.005), (6.0, 0.005), (12.0, 0.005))
 SINGLE = ((2.0, 0.005), (2.0, 0.01), (2.0, 0.02))
@@ -31,3 +36,25 @@ def campaign(plan, *, rig=None, device=None, **options):
     """Return the campaign of a plan of (frequency, amplitude), Hz and m."""
     records = tuple(record(f, a, **options) for f, a in plan)
     return Campaign("plan", records, rig=rig, device=device)
+
+
+def planned(plan, **options):
+    """Return the plan of these tests as a check sees it."""
+    return plan_of([record_rows(observe(r)) for r in campaign(plan, **options).records])
+
+
+def louder(plan: Plan, factor: float) -> Plan:
+    """Return a plan with so many times the noise."""
+    sines = tuple(
+        SineTest(s.frequency, s.amplitude, factor * s.deviation) for s in plan.sines
+    )
+    return replace(plan, sines=sines, size=plan.size / factor, noise=factor * plan.noise)
+
+
+def white(plan: Plan, sigma: np.ndarray, size: float) -> Plan:
+    """Return a plan of 800 samples a test with white noise (T,), N, and force of such a size."""
+    sines = tuple(
+        SineTest(s.frequency, s.amplitude, np.full(s.deviation.size, own / np.sqrt(800.0)))
+        for s, own in zip(plan.sines, sigma, strict=True)
+    )
+    return replace(plan, sines=sines, size=size)

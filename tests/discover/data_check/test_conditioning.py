@@ -5,10 +5,15 @@ import pytest
 
 from discover.data_check import check_campaign
 from discover.data_check.conditioning import conditioning
-from discover.data_check.plan import plan_rows
-from discover.study.options import StudyOptions
-from discover.study.preparation import prepare
-from tests.discover.data_check.plan import SINGLE, WIDE, campaign, record
+from tests.discover.data_check.plan import (
+    SINGLE,
+    WIDE,
+    campaign,
+    louder,
+    planned,
+    record,
+    white,
+)
 
 
 def by_name(items):
@@ -26,10 +31,8 @@ def wide():
 
 
 @pytest.fixture(scope="module")
-def rows():
-    prepared = prepare(campaign(WIDE), StudyOptions())
-    windows = plan_rows(prepared.fitted, prepared.observations, prepared.dictionary)
-    return windows, prepared.dictionary
+def plan():
+    return planned(WIDE)
 
 
 def test_at_one_frequency_both_structures_have_full_rank_but_share_their_forces(single):
@@ -56,31 +59,26 @@ def test_one_frequency_holds_a_fractional_order_and_its_slope_as_well_as_mass_an
     assert found["FOIM"].condition == pytest.approx(found["IOIM-linear"].condition, rel=1e-6)
 
 
-def test_the_condition_number_is_that_of_the_samples_themselves(rows):
+def test_the_condition_number_is_that_of_the_samples_themselves(plan):
     """Singular values in the time domain: exact columns, each record's white noise."""
-    windows, dictionary = rows
+    sigma = np.array([1.0, 3.0, 2.0, 5.0, 1.0, 4.0])
     columns = []
-    for (frequency, amplitude), window in zip(WIDE, windows, strict=True):
+    for (frequency, amplitude), own in zip(WIDE, sigma, strict=True):
         omega = 2.0 * np.pi * frequency
         phase = omega * (np.arange(800) + 0.5) / (100.0 * frequency)
-        sigma = np.sqrt(window.noise_power)
         velocity = amplitude * omega * np.cos(phase)
         acceleration = -amplitude * omega**2 * np.sin(phase)
-        columns.append(np.stack([acceleration, velocity, np.sign(velocity)]) / sigma)
+        columns.append(np.stack([acceleration, velocity, np.sign(velocity)]) / own)
     design = np.concatenate(columns, axis=1).T
     values = np.linalg.svd(design / np.linalg.norm(design, axis=0), compute_uv=False)
-    white = [replace(w, variance=np.full_like(w.variance, w.noise_power / 800)) for w in windows]
-    found = by_name(conditioning(white, dictionary))["IOIM-linear"]
+    found = by_name(conditioning(white(plan, sigma, plan.size)))["IOIM-linear"]
     assert found.condition == pytest.approx(values[0] / values[-1], rel=0.03)
 
 
-def test_noise_takes_rank_but_leaves_the_condition_number(rows):
-    windows, dictionary = rows
-    quiet = by_name(conditioning(windows, dictionary))
-    louder = [replace(w, variance=1e6 * w.variance) for w in windows]
-    loud = by_name(conditioning(louder, dictionary))
-    # Friction's curve of reversal has a prior of its own, which noise weighs against.
-    assert loud["IOIM-linear"].condition == pytest.approx(quiet["IOIM-linear"].condition, rel=0.05)
+def test_noise_takes_rank_but_leaves_the_condition_number(plan):
+    quiet = by_name(conditioning(plan))
+    loud = by_name(conditioning(louder(plan, 1000.0)))
+    assert loud["IOIM-linear"].condition == pytest.approx(quiet["IOIM-linear"].condition, rel=1e-6)
     assert quiet["IOIM-laminar"].rank == 4
     assert loud["IOIM-laminar"].rank < 4
 

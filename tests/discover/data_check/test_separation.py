@@ -1,38 +1,40 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from discover.data_check import check_campaign
-from discover.data_check.nominal import TELLING
+from discover.data_check import TELLING, check_campaign
 from discover.data_check.separation import expected_pairs, inseparable_pairs
-from discover.study.options import StudyOptions
-from discover.study.preparation import prepare
-from tests.discover.data_check.plan import SINGLE, WIDE, campaign, record
+from tests.discover.data_check.plan import (
+    SINGLE,
+    WIDE,
+    campaign,
+    louder,
+    planned,
+    record,
+    white,
+)
 
 
-def expected_gap(truth, model, windows, dictionary):
-    gaps = [g for p in expected_pairs(windows, dictionary) for g in p.gaps]
+def expected_gap(truth, model, plan):
+    gaps = [g for p in expected_pairs(plan) for g in p.gaps]
     return next(g.nats for g in gaps if (g.truth, g.model) == (truth, model))
 
 
-def open_pairs(prepared):
-    pairs = expected_pairs(prepared.fitted, prepared.dictionary)
-    return {p.structures: p for p in inseparable_pairs(pairs, prepared.fitted)}
+def open_pairs(plan):
+    return {p.structures: p for p in inseparable_pairs(expected_pairs(plan), plan)}
 
 
 @pytest.fixture(scope="module")
 def wide():
-    return prepare(campaign(WIDE), StudyOptions())
+    return planned(WIDE)
 
 
 @pytest.fixture(scope="module")
 def single():
-    return prepare(campaign(SINGLE), StudyOptions())
+    return planned(SINGLE)
 
 
 def test_at_one_frequency_a_fractional_order_is_mass_and_damper(single):
-    assert expected_gap("FOIM", "IOIM-linear", single.fitted, single.dictionary) < 1e-6
+    assert expected_gap("FOIM", "IOIM-linear", single) < 1e-6
     pairs = open_pairs(single)
     assert "single frequency (2 Hz)" in pairs["FOIM", "IOIM-linear"].why
     assert pairs["FOIM", "IOIM-linear"].gap < 1e-6
@@ -40,51 +42,45 @@ def test_at_one_frequency_a_fractional_order_is_mass_and_damper(single):
 
 def test_over_a_wide_plan_the_structures_are_apart(wide):
     assert open_pairs(wide) == {}
-    assert expected_gap("FOIM", "IOIM-linear", wide.fitted, wide.dictionary) > 100.0
+    assert expected_gap("FOIM", "IOIM-linear", wide) > 100.0
 
 
 def test_a_larger_model_always_reproduces_a_smaller_one(wide):
-    assert expected_gap("IOIM-linear", "IOIM-laminar", wide.fitted, wide.dictionary) < 1e-9
-    assert expected_gap("IOIM-laminar", "IOIM-linear", wide.fitted, wide.dictionary) > TELLING
+    assert expected_gap("IOIM-linear", "IOIM-laminar", wide) < 1e-9
+    assert expected_gap("IOIM-laminar", "IOIM-linear", wide) > TELLING
 
 
 @pytest.mark.parametrize("truth", ["FOIM", "IOIM-turbulent"])
 def test_the_gap_falls_with_the_square_of_the_noise(wide, truth):
-    model = "IOIM-laminar"
-    louder = [replace(w, variance=9.0 * w.variance) for w in wide.fitted]
-    quiet = expected_gap(truth, model, wide.fitted, wide.dictionary)
-    assert expected_gap(truth, model, louder, wide.dictionary) == pytest.approx(
-        quiet / 9.0, rel=1e-6
-    )
+    quiet = expected_gap(truth, "IOIM-laminar", wide)
+    loud = expected_gap(truth, "IOIM-laminar", louder(wide, 3.0))
+    assert loud == pytest.approx(quiet / 9.0, rel=1e-6)
 
 
 def test_the_gap_equals_least_squares_on_the_samples_themselves(wide):
-    """The same question asked in the time domain: exact columns, the records' white noise."""
+    """The same question asked in the time domain: exact columns, white noise in every record."""
+    sigma = np.array([1.0, 3.0, 2.0, 5.0, 1.0, 4.0])
     columns, truth, measured = [], [], []
-    for (frequency, amplitude), window in zip(WIDE, wide.fitted, strict=True):
+    for (frequency, amplitude), own in zip(WIDE, sigma, strict=True):
         omega = 2.0 * np.pi * frequency
         phase = omega * np.arange(800) / (100.0 * frequency)
         test = record(frequency, amplitude, noise=0.0)
-        sigma = np.sqrt(window.noise_power)
         velocity = amplitude * omega * np.cos(phase)
         acceleration = -amplitude * omega**2 * np.sin(phase)
-        columns.append(np.stack([acceleration, velocity, np.sign(velocity)]) / sigma)
-        truth.append(amplitude * omega**1.5 * np.sin(phase + 0.75 * np.pi) / sigma)
-        measured.append(test.force / sigma)
+        columns.append(np.stack([acceleration, velocity, np.sign(velocity)]) / own)
+        truth.append(amplitude * omega**1.5 * np.sin(phase + 0.75 * np.pi) / own)
+        measured.append(test.force / own)
     design, force = np.concatenate(columns, axis=1).T, np.concatenate(truth)
-    force *= np.linalg.norm(np.concatenate(measured)) / np.linalg.norm(force)
+    size = float(np.linalg.norm(np.concatenate(measured)))
+    force *= size / np.linalg.norm(force)
     scale = np.linalg.norm(design, axis=0)
     misfit = force - design / scale @ np.linalg.lstsq(design / scale, force, rcond=None)[0]
-    white = [
-        replace(w, variance=np.full_like(w.variance, w.noise_power / 800)) for w in wide.fitted
-    ]
-    gap = expected_gap("FOIM", "IOIM-linear", white, wide.dictionary)
+    gap = expected_gap("FOIM", "IOIM-linear", white(wide, sigma, size))
     assert gap == pytest.approx(0.5 * misfit @ misfit, rel=0.02)
 
 
 def test_much_noise_leaves_turbulent_and_laminar_friction_open():
-    prepared = prepare(campaign(WIDE[1:3], noise=0.3), StudyOptions())
-    pairs = open_pairs(prepared)
+    pairs = open_pairs(planned(WIDE[1:3], noise=0.3))
     assert "speak with only" in pairs["IOIM-laminar", "IOIM-turbulent"].why
 
 
@@ -102,10 +98,7 @@ def test_a_plan_of_one_frequency_can_not_give_an_order():
 
 def test_harmonics_of_the_drive_are_no_plan():
     """Two percent of a second harmonic would formally tell an order at a single frequency."""
-    bent = campaign(SINGLE, second=0.02)
-    measured = prepare(bent, StudyOptions())
-    assert expected_gap("FOIM", "IOIM-linear", measured.fitted, measured.dictionary) > TELLING
-    checked = check_campaign(bent)
+    checked = check_campaign(campaign(SINGLE, second=0.02))
     pairs = {p.structures: p for p in checked.pairs}
     assert pairs["FOIM", "IOIM-linear"].nats < 1e-6
     assert ("FOIM", "IOIM-linear") in {p.structures for p in checked.inseparable}
