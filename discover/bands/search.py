@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from scipy.special import logsumexp
@@ -17,6 +18,7 @@ from discover.posterior.structures import (
     Choice,
     Divided,
     Variant,
+    as_started,
     divided,
     sums_of_many,
     sums_of_one,
@@ -91,13 +93,18 @@ class BandSearch:
         return np.array([[s, *own] for s in self.friction.scales])
 
     def one(
-        self, place: Place, shares: Array, start: Indices, choice: Choice | None = None
+        self, place: Place, shares: Array, start: Indices, *, others: bool = True
     ) -> tuple[float, int, Divided]:
-        """Return a division's log evidence at sizes, the place of the best scale, its answer."""
+        """Return a division's log evidence at sizes, the place of the best scale, its answer.
+
+        Without `others` each band has the variant that it starts with, and no other.
+        """
         here = self.space.given(place.sizes(self.space.own_unit))
         sums = sums_of_one(here, self.columns, self.common, self.scales(), shares)
-        chosen = self.choice if choice is None else choice
-        answers = [divided(s, chosen, start[None]) for s in sums]
+        answers = [
+            divided(s, self.choice, start[None]) if others else as_started(s, self.choice, start)
+            for s in sums
+        ]
         values = np.array([float(a.value[0]) for a in answers])
         best = int(values.argmax())
         return float(logsumexp(values)) - float(np.log(values.size)), best, answers[best]
@@ -167,21 +174,24 @@ class BandSearch:
                 best, begun = int(answer.value.argmax()), answer.best
                 others = float(logsumexp(answer.value - answer.value[best]))
             alone = {}
-            there = climb(lambda p, b=best, s=begun, k=alone: self._seen(p, shares[b], s[b], k),
-                          place)
+            there = climb(partial(self._seen, shares[best], begun[best], alone), place)
             scale = alone[there][1]
             if there == place:
                 break
             place, start = there, begun
-        self._seen(self.space.quiet, shares[best], alone[place][2].best[0], alone)
-        total = float(logsumexp([v for v, _, _ in alone.values()])) + others + prior
-        variants = alone[place][2].best[0]
+        self._seen(shares[best], begun[best], alone, self.space.quiet)
+        last = self.one(place, shares[best], begun[best])[2]
+        best_alone = alone[place][0]
+        total = float(logsumexp([v for v, _, _ in alone.values()])) - best_alone
+        total += float(last.value[0]) if shares[best].shape[0] > 1 else best_alone
+        total += others + prior
+        variants = last.best[0]
         return Banded(
             coordinate=names if isinstance(names, str) else names[best],
             shares=shares[best],
             brackets=ends[best],
             variants=tuple(int(v) for v in variants),
-            by_variant=alone[place][2].by_variant[0],
+            by_variant=last.by_variant[0],
             value=total,
             place=place,
             scale=scale,
@@ -189,11 +199,11 @@ class BandSearch:
         )
 
     def _seen(
-        self, place: Place, shares: Array, start: Indices,
-        known: dict[Place, tuple[float, int, Divided]],
+        self, shares: Array, start: Indices, known: dict[Place, tuple[float, int, Divided]],
+        place: Place,
     ) -> float:
         if place not in known:
-            known[place] = self.one(place, shares, start)
+            known[place] = self.one(place, shares, start, others=shares.shape[0] == 1)
         return known[place][0]
 
 
@@ -207,7 +217,9 @@ def _kept(ends: Array, now: Banded, band: int, parts: Array) -> Array:
     return ends[kept]
 
 
-def searched(search: BandSearch, start: Place | None = None, *, bands: int | None = None) -> list[Banded]:
+def searched(
+    search: BandSearch, start: Place | None = None, *, bands: int | None = None
+) -> list[Banded]:
     """Return the best division for every number of bands, as long as one more is more probable.
 
     Parameters

@@ -212,6 +212,16 @@ def divided(sums: Sums, choice: Choice, start: Indices) -> Divided:
     return Divided(np.asarray(value), best, by_variant)
 
 
+def as_started(sums: Sums, choice: Choice, start: Indices) -> Divided:
+    """Return one division with the variants (B,) that it starts with, and no others."""
+    own = choice.of(start)
+    kept = np.arange(start.size)
+    found = _of_band(sums, own, kept[None], 0)[0, :1]
+    by_variant = np.full((1, start.size, choice.columns.shape[0]), -np.inf)
+    by_variant[0, kept, start] = found
+    return Divided(found, start[None].copy(), by_variant)
+
+
 def _of_band(sums: Sums, choice: Choice, best: Indices, band: int) -> Array:
     """Return the log evidence (D, V) of a band's variants beside the best ones of the others."""
     count, bands = best.shape
