@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models.checks import Array, InputError, number
+from models.checks import Array, InputError, number, shown
 from models.device import Device
 from models.flow import critical_frequency
 from models.fractional import harmonic_factors
@@ -73,9 +73,7 @@ class FittedTerm:
 
         A user's own term comes with its file's name and hash.
         """
-        result = {
-            "id": self.id, "coefficient": self.coefficient, "unit": self.unit, **self.shape
-        }
+        result = {"id": self.id, "coefficient": self.coefficient, "unit": self.unit, **self.shape}
         source = self.term.source
         return result if source is None else {**result, "source": source.to_dict()}
 
@@ -110,7 +108,7 @@ def _check_source(identifier: str, source: Any, where: str) -> None:
         return
     if not isinstance(source, Mapping) or not isinstance(source.get("sha256"), str):
         raise InputError(
-            f"source of {identifier!r}", expected="a file with its sha256", found=repr(source),
+            f"source of {identifier!r}", expected="a file with its sha256", found=shown(source),
             where=where,
         )  # fmt: skip
     if identifier not in TERMS:
@@ -196,7 +194,8 @@ class ForceModel:
     def from_dict(cls, data: Mapping[str, Any], *, where: str = "") -> ForceModel:
         """Read what `to_dict` wrote."""
         if not isinstance(data.get("terms"), Sequence):
-            raise InputError("terms", expected="a list", found=repr(data.get("terms")), where=where)
+            found = shown(data.get("terms"))
+            raise InputError("terms", expected="a list", found=found, where=where)
         terms = tuple(FittedTerm.from_dict(t, where=where) for t in data["terms"])
         return cls(terms, str(data.get("name", "")))
 
@@ -283,12 +282,14 @@ class SegmentedModel:
 
 def _added(ids: Any, bands: Sequence[Band], where: str) -> tuple[str, ...]:
     if not isinstance(ids, list):
-        raise InputError("added", expected="a list of ids", found=repr(ids), where=where)
+        raise InputError("added", expected="a list of ids", found=shown(ids), where=where)
     for band in bands:
         last = [t.id for t in band.model.terms][len(band.model.terms) - len(ids) :]
         if last != ids:
             raise InputError(
-                "added", expected="the ids of the last terms of every band", found=repr(ids),
+                "added",
+                expected="the ids of the last terms of every band",
+                found=shown(ids),
                 where=where,
             )
     return tuple(ids)

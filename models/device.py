@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, NamedTuple
 
-from models.checks import InputError, number, one_of
+from models.checks import InputError, number, one_of, shown
 
 
 @dataclass(frozen=True)
@@ -307,7 +307,7 @@ class Device:
 def _fluid(table: object, base: Device | None, *, where: str) -> Fluid:
     """Return the fluid of a `[device.fluid]` table, gaps filled from the preset's."""
     if not isinstance(table, Mapping):
-        raise InputError("fluid", expected="a table", found=repr(table), where=where)
+        raise InputError("fluid", expected="a table", found=shown(table), where=where)
     merged = {} if base is None else asdict(base.fluid)
     for key, value in table.items():
         one_of("key", key, ("density", "viscosity"), where=f"{where}.fluid")

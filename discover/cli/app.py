@@ -20,11 +20,13 @@ from discover.cli.invocation import Invocation
 from discover.cli.reproduce import reproduce
 from discover.cli.simulate import simulate
 from discover.cli.synth import synth
-from models.checks import InputError
+from models.checks import InputError, InputErrors, printable
 
 BAD_INPUT = 2
 INTERRUPTED = 130
 INTERNAL_ERROR = 70
+
+_LONGEST = 1900  # characters of a line, with what the terminal or a log puts before it
 
 app = typer.Typer(
     name="inerter",
@@ -79,6 +81,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if result == INTERRUPTED:  # newer typer turns the interrupt into this code by itself
             raise KeyboardInterrupt
         sys.stdout.flush()
+    except InputErrors as error:
+        for line in error.lines:
+            _complain(line, BAD_INPUT)
+        return BAD_INPUT
     except InputError as error:
         return _complain(str(error), BAD_INPUT)
     except (KeyboardInterrupt, typer.Abort):
@@ -109,5 +115,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _complain(text: str, code: int) -> int:
     """Print one line on stderr and return `code`."""
-    print("inerter: " + " ".join(text.split()), file=sys.stderr)
+    print("inerter: " + printable(" ".join(text.split()), longest=_LONGEST), file=sys.stderr)
     return code

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from models.checks import InputError, number
+from models.checks import InputError, number, shown
 
 DEFAULT_SEED = 0
 MOST_VALUES = 1000
@@ -134,7 +134,7 @@ def identifiers(text: str | None, *, where: str) -> tuple[str, ...] | None:
     parts = tuple(part.strip() for part in text.split(","))
     if not all(parts):
         raise InputError(
-            "list", expected="ids parted by single commas", found=repr(text), where=where
+            "list", expected="ids parted by single commas", found=shown(text), where=where
         )
     twice = next((p for p in parts if parts.count(p) > 1), None)
     if twice is not None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from models.checks import Array, InputError, number
+from models.checks import Array, InputError, number, shown
 from models.motion import Motion
 
 Shape = Mapping[str, float]
@@ -126,7 +126,7 @@ class Term:
                 raise InputError(
                     f"parameter {name!r} of {self.id}",
                     expected="one of " + (", ".join(known) or "none"),
-                    found=repr(name),
+                    found=shown(name),
                 )
         result = {}
         for name, parameter in known.items():
