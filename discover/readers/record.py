@@ -3,39 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
-from discover.readers.columns import QUANTITIES, assumed_units, missing_column, read_columns
+from discover.readers.columns import (
+    QUANTITIES,
+    Columns,
+    assumed_units,
+    missing_column,
+    read_columns,
+)
 from discover.readers.consistency import derivative_agreement
+from discover.readers.entries import Entry
 from discover.readers.labels import check_labels
-from discover.readers.sampling import jitter_text, regular
+from discover.readers.sampling import regular, resampling_text
 from discover.readers.source import Source
+from discover.readers.units import SMALLEST
 from discover.record_kind import classify
 from discover.records import Finding, Record
-from models.checks import Array, InputError
+from models.checks import Array, InputError, shown
 
 _MAY_LACK = tuple(name for name in QUANTITIES if name not in ("time", "force"))
 
 
-@dataclass(frozen=True)
-class Entry:
-    """One table of ``[[records]]``."""
-
-    file: str
-    """Path inside the campaign folder, as written."""
-    frequency: float | None
-    """Hz, as labelled."""
-    amplitude: float | None
-    """m, as labelled."""
-    held_out: bool
-    """Never fitted, only predicted."""
-
-
 def read_record(
-    source: Source, entry: Entry, *, names: Mapping[str, str], units: Mapping[str, str]
-) -> tuple[Record, list[Finding]]:
+    source: Source,
+    entry: Entry,
+    *,
+    names: Mapping[str, str],
+    units: Mapping[str, str],
+    part: str = "",
+) -> tuple[Record, list[Finding], tuple[str, ...]]:
     """Read one record, judge it, and say what had to be mended.
 
     Parameters
@@ -45,19 +44,30 @@ def read_record(
     entry : Entry
         What ``campaign.toml`` says of it.
     names, units : mapping
-        ``[columns]`` and ``[units]``.
+        ``[columns]``, with the entry's own channels, and ``[units]``.
+    part : str
+        The sheet, group or table, where the file has several.
 
     Returns
     -------
     Record
     list of Finding
+    tuple of str
+        Quantities whose unit is nowhere stated.
 
     Raises
     ------
     InputError
         On anything that leaves no usable record.
     """
-    columns = read_columns(source, names=names, units=units, may_lack=_MAY_LACK)
+    file = entry.label(part)
+    columns = read_columns(
+        source,
+        names=names,
+        units=units,
+        may_lack=_MAY_LACK,
+        step=entry.step,
+    )
     if "displacement" not in columns.values and None in (entry.frequency, entry.amplitude):
         raise missing_column(
             source,
@@ -65,17 +75,21 @@ def read_record(
             names.get("displacement", "displacement"),
             instead=", or the record's frequency and amplitude given",
         )
+    columns = _within(columns, entry, file)
     findings = [
         Finding(
             "warning",
-            f"column {header!r} is not read: it is nearly {quantity!r}; rename it, or name it in "
-            "[columns]",
-            entry.file,
+            f"column {shown(header)} is not read: it is nearly {quantity!r}; rename it, or name it"
+            " in [columns]",
+            file,
         )
         for header, quantity in columns.unused.items()
     ]
+    if columns.step is not None:
+        text = f"it has no time column: the times are made of its {1.0 / columns.step:.6g} Hz"
+        findings.append(Finding("note", text, file))
     if columns.assumed:
-        findings.append(Finding("warning", assumed_units(columns.assumed), entry.file))
+        findings.append(Finding("warning", assumed_units(columns.assumed), file))
     values = dict(columns.values)
     has_motion = "displacement" in values
     time, measured = values.pop("time"), values
@@ -84,17 +98,17 @@ def read_record(
         values,
         raw_time=columns.raw_time,
         resample=has_motion,
-        where=entry.file,
+        where=file,
         place=source.place,
     )
     for name in ("displacement", "force"):
-        if name in values and not np.ptp(values[name]) > 0.0:
+        if name in values and not np.ptp(values[name]) > SMALLEST:
             found = f"{values[name][0]:.6g} throughout"
-            raise InputError(name, expected="varying", found=found, where=entry.file)
+            raise InputError(name, expected="varying", found=found, where=file)
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
     clipped = clipping_text(values["force"])
     if clipped:
-        findings.append(Finding("warning", clipped, entry.file))
+        findings.append(Finding("warning", clipped, file))
     values = dict(sampled.columns)
     for order, name in enumerate(("velocity", "acceleration"), start=1):
         if name not in values:
@@ -109,9 +123,9 @@ def read_record(
                 f"the measured {name} disagrees with the displacement: {agreement.reason}; "
                 "it is not used"
             )
-            findings.append(Finding("warning", text, entry.file))
+            findings.append(Finding("warning", text, file))
     record = Record(
-        file=entry.file,
+        file=file,
         time=sampled.time,
         force=values["force"],
         displacement=values.get("displacement"),
@@ -124,14 +138,34 @@ def read_record(
         held_out=entry.held_out,
         uniform=sampled.uniform,
     )
-    if sampled.jitter:
+    if sampled.uneven:
         resampled = classify(record).kind != "sine"
-        level, text = jitter_text(sampled.jitter, step, resampled=resampled)
-        findings.append(Finding(level, text, entry.file))
+        level, text = resampling_text(sampled, resampled=resampled)
+        findings.append(Finding(level, text, file))
         if not resampled:
             record = record.sampled(time, measured)
     findings.extend(check_labels(record))
-    return record, findings
+    return record, findings, columns.assumed
+
+
+def _within(columns: Columns, entry: Entry, file: str) -> Columns:
+    """Return the columns over the span of time that the entry asks for."""
+    first, last = entry.span
+    if first is None and last is None:
+        return columns
+    time = columns.values["time"]
+    inside = np.ones(time.size, dtype=bool)
+    if first is not None:
+        inside &= time >= first
+    if last is not None:
+        inside &= time <= last
+    if not inside.any():
+        raise InputError(
+            "range", expected=f"inside the record, {time.min():.6g} to {time.max():.6g} s",
+            found=entry.span_text, where=file,
+        )  # fmt: skip
+    values = {name: column[inside] for name, column in columns.values.items()}
+    return replace(columns, values=values, raw_time=columns.raw_time[inside])
 
 
 def clipping_text(force: Array) -> str:
