@@ -16,6 +16,7 @@ from discover.cli.check import check
 from discover.cli.design import design
 from discover.cli.discover import discover
 from discover.cli.gap import gap
+from discover.cli.init import init
 from discover.cli.invocation import Invocation
 from discover.cli.reproduce import reproduce
 from discover.cli.simulate import simulate
@@ -36,7 +37,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for verb in (check, discover, gap, simulate, synth, design, reproduce):
+for verb in (init, check, discover, gap, simulate, synth, design, reproduce):
     app.command(verb.__name__)(verb)
 
 

@@ -17,7 +17,8 @@ ShippedCampaign = Annotated[
     Path | None,
     typer.Argument(
         metavar="[CAMPAIGN]",
-        help="Folder with campaign.toml and its records [default: the shipped one].",
+        help="Folder with campaign.toml and its records, or one file of records"
+        " [default: the shipped one].",
         show_default=False,
     ),
 ]

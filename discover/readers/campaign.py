@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shlex
 import stat
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
@@ -12,8 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from discover.readers.choice import chosen_sources
+from discover.readers.draft import Answers, Draft, draft_campaign
 from discover.readers.entries import Entry, expanded
-from discover.readers.formats import open_book
+from discover.readers.formats import OPENERS, open_book
+from discover.readers.guess import listed
 from discover.readers.plausibility import implausible
 from discover.readers.record import read_record
 from discover.readers.source import Book
@@ -26,7 +29,7 @@ from discover.readers.tables import (
     read_system,
 )
 from discover.records import Campaign, Finding, Record
-from models.checks import InputError, InputErrors, nearest, shown
+from models.checks import InputError, InputErrors, nearest, printable, shown
 
 CAMPAIGN_FILE = "campaign.toml"
 _TABLES = ("title", "device", "columns", "units", "records", "rig", "system")
@@ -35,12 +38,13 @@ _MOST_ERRORS = 20
 
 
 def read_campaign(path: str | Path) -> Campaign:
-    """Read a campaign folder with everything in SI.
+    """Read a campaign folder, or one file as a campaign of its own, with everything in SI.
 
     Parameters
     ----------
     path : str or Path
-        The folder, or its ``campaign.toml``.
+        The folder, or its ``campaign.toml``; or a file of records, whose columns and units are
+        guessed, with findings that say so.
 
     Returns
     -------
@@ -55,11 +59,45 @@ def read_campaign(path: str | Path) -> Campaign:
     """
     given = Path(path)
     folder = given.parent if given.name == CAMPAIGN_FILE and not given.is_dir() else given
+    if given.is_file() and given.suffix.lower() in OPENERS:
+        title = given.stem
+        draft = draft_campaign(given.parent, [given.name], title=title, answers=Answers({}, {}))
+        return _campaign(given.parent, draft.toml().encode(), str(path), _guesses(draft))
     if not folder.is_dir():
         raise InputError(
-            str(path), expected="a campaign folder", found="a file" if given.exists() else "nothing"
+            str(path),
+            expected="a campaign folder, or a file of records (" + ", ".join(OPENERS) + ")",
+            found=_kind(given, "a file of another kind"),
+        )
+    if not (folder / CAMPAIGN_FILE).exists():
+        raise InputError(
+            f"file {CAMPAIGN_FILE!r}",
+            expected="in the campaign folder",
+            found=f"nothing there; `inerter init {shlex.quote(str(folder))}` writes it",
+            where=str(folder),
         )
     content = _bytes_of(folder, CAMPAIGN_FILE, where=str(folder))
+    return _campaign(folder, content, str(path), [])
+
+
+def _guesses(draft: Draft) -> list[Finding]:
+    """Return what to tell of a file that no campaign describes."""
+    plain = not draft.columns and not draft.units
+    found = [] if plain else [Finding("note", t) for t in listed(draft.records[0].guess)]
+    for doubt in draft.doubts:
+        what = "column" if doubt.key == "columns" else "unit"
+        others = " or ".join(doubt.choices[1:])
+        text = (
+            f"the {what} of {doubt.quantity} is a guess, {shown(doubt.taken)}: {doubt.why}"
+            + (f"; it may be {printable(others)}" if others else "")
+            + "; `inerter init` with this file writes a campaign.toml to correct"
+        )
+        found.append(Finding("warning", text))
+    return found
+
+
+def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Finding]) -> Campaign:
+    """Return the campaign of a folder by the content of its ``campaign.toml``."""
     table = _parse(content)
     _check_keys(table)
     title = table.get("title", folder.resolve().name)
@@ -78,7 +116,7 @@ def read_campaign(path: str | Path) -> Campaign:
     for entry in entries:
         read.take(entry)
     read.finish(len(entries))
-    records, findings = read.records, read.findings
+    records, findings = read.records, [*findings, *read.findings]
     _check_used(names, entries, records)
     if system is not None and not any(system.input in r.inputs for r in records):
         text = f"[system] takes {system.input} as its input, but no record has that column"
@@ -91,7 +129,7 @@ def read_campaign(path: str | Path) -> Campaign:
         rig=rig,
         system=system,
         content_hash=digest.hexdigest(),
-        source=str(path),
+        source=source,
         findings=_merged(findings, len(records)),
     )
 
@@ -207,10 +245,12 @@ def _bytes_of(folder: Path, name: str, *, where: str, hint: bool = True) -> byte
     )
 
 
-def _kind(target: Path) -> str:
-    """Return in words what lies at a path where that is no file."""
+def _kind(target: Path, file: str = "a file") -> str:
+    """Return in words what lies at a path."""
     if not target.exists():
         return "nothing there"
+    if target.is_file():
+        return file
     mode = target.stat().st_mode
     kinds = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"))
     return next((text for test, text in kinds if test(mode)), "a device")
