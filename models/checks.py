@@ -158,6 +158,23 @@ def number(
     return result
 
 
+def stored_number(name: str, value: Any, *, where: str = "", size: float = 1e30) -> float:
+    """Return a number of a document: neither text nor true, and of a size that can be squared.
+
+    Examples
+    --------
+    >>> stored_number("coefficient", 3)
+    3.0
+    >>> stored_number("coefficient", True, where="model.json")
+    Traceback (most recent call last):
+        ...
+    models.checks.InputError: model.json: coefficient must be a number, got True
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(name, expected="a number", found=shown(value), where=where)
+    return number(name, value, at_least=-size, at_most=size, where=where)
+
+
 def finite_array(
     name: str, value: ArrayLike, *, ndim: int | None = None, min_size: int = 1, where: str = ""
 ) -> Array:

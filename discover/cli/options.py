@@ -80,8 +80,19 @@ EffectFiles = Annotated[
 ]
 
 
-def grid(text: str | None, *, where: str) -> tuple[float, ...] | None:
+def grid(
+    text: str | None, *, where: str, at_least: float | None = None, at_most: float | None = None
+) -> tuple[float, ...] | None:
     """Return the values of ``start:stop:step`` (both ends in) or ``a,b,c``; None for none.
+
+    Parameters
+    ----------
+    text : str or None
+        As typed.
+    where : str
+        The option.
+    at_least, at_most : float, optional
+        Bounds of every value.
 
     Raises
     ------
@@ -98,13 +109,18 @@ def grid(text: str | None, *, where: str) -> tuple[float, ...] | None:
     if text is None:
         return None
     if ":" not in text:
-        return tuple(number("value", part.strip(), where=where) for part in text.split(","))
+        return tuple(
+            number("value", part.strip(), at_least=at_least, at_most=at_most, where=where)
+            for part in text.split(",")
+        )
     parts = text.split(":")
     if len(parts) != 3:
         raise InputError("grid", expected="start:stop:step or a,b,c", found=text, where=where)
     start, stop, step = (
-        number(name, part.strip(), where=where)
-        for name, part in zip(("start", "stop", "step"), parts, strict=True)
+        number(name, part.strip(), at_least=low, at_most=at_most, where=where)
+        for name, part, low in zip(
+            ("start", "stop", "step"), parts, (at_least, at_least, None), strict=True
+        )
     )
     if step <= 0.0 or stop < start:
         raise InputError("grid", expected="rising, with a step above 0", found=text, where=where)
