@@ -19,6 +19,8 @@ from discover.cli.gap import gap
 from discover.cli.init import init
 from discover.cli.invocation import Invocation
 from discover.cli.reproduce import reproduce
+from discover.cli.results import one_run
+from discover.cli.signals import leaving
 from discover.cli.simulate import simulate
 from discover.cli.synth import synth
 from models.checks import InputError, InputErrors, printable
@@ -76,9 +78,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not sys.warnoptions:  # what a user should know is a finding in the document
         warnings.simplefilter("ignore")
     try:
-        result = typer.main.get_command(app).main(
-            args=list(given), prog_name="inerter", standalone_mode=False, obj=Invocation(given)
-        )
+        with one_run():
+            result = _run(given)
         if result == INTERRUPTED:  # newer typer turns the interrupt into this code by itself
             raise KeyboardInterrupt
         sys.stdout.flush()
@@ -89,6 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         return _complain(str(error), BAD_INPUT)
     except (KeyboardInterrupt, typer.Abort):
+        leaving()
         # An interrupt of code in a string, as imports run it, would have Python leave by the
         # signal whatever is returned here, until other code in a string has run.
         exec("")
@@ -111,7 +113,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
             " INERTER_DEBUG=1 shows where",
             INTERNAL_ERROR,
         )
-    return int(result or 0)
+    return result if isinstance(result, int) else 0
+
+
+def _run(given: Sequence[str]) -> object:
+    command = typer.main.get_command(app)
+    return command.main(
+        args=list(given), prog_name="inerter", standalone_mode=False, obj=Invocation(tuple(given))
+    )
 
 
 def _complain(text: str, code: int) -> int:

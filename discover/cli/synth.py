@@ -11,7 +11,7 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation
-from discover.cli.results import working
+from discover.cli.results import hold_folder, working
 from discover.report.folder import check_replaceable, write_folder
 from discover.report.words import counted
 from models.checks import InputError
@@ -88,6 +88,7 @@ def synth(
     sizes = dict(_hidden(item) for item in hide or ())
     grid_hz = options.grid(frequencies, where="--frequencies", at_least=1e-3, at_most=1e3)
     grid_mm = options.grid(amplitudes, where="--amplitudes", at_least=1e-3, at_most=1e4) or ()
+    hold_folder(folder)
     check_replaceable(folder, fresh=True)
 
     from discover.cli.known_device import known_device
