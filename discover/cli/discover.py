@@ -6,7 +6,7 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation
-from discover.cli.results import deliver, result_folder, working
+from discover.cli.results import after_reading, deliver, result_folder, working
 from discover.cli.shipped import shipped_campaign
 from models.checks import number, one_of
 
@@ -46,7 +46,7 @@ def discover(
 
     with working(f"Reading {source}"):
         measured = read_campaign(source)
-    with working(f"Studying {len(measured.records)} records"):
+    with working(f"Studying {len(measured.records)} records"), after_reading(measured):
         study = run_study(
             measured,
             StudyOptions(

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 from rich.console import Console
@@ -17,7 +17,12 @@ from rich.console import Console
 from discover.report.document import json_text
 from discover.report.folder import check_replaceable, write_folder
 from discover.report.lock import folder_lock
+from models.checks import InputError, InputErrors
 
+if TYPE_CHECKING:
+    from discover.records import Campaign
+
+_MOST_WARNINGS = 5
 _run: ContextVar[contextlib.ExitStack | None] = ContextVar("run", default=None)
 
 
@@ -58,6 +63,28 @@ def hold_folder(folder: Path) -> None:
     stack = _run.get()
     if stack is not None:
         stack.enter_context(folder_lock(folder))
+
+
+@contextlib.contextmanager
+def after_reading(campaign: Campaign) -> Iterator[None]:
+    """Tell beside an error what reading the campaign warned of: it may be why.
+
+    Raises
+    ------
+    InputErrors
+        For an `InputError` in the block, where there were warnings.
+    """
+    try:
+        yield
+    except InputErrors:
+        raise
+    except InputError as error:
+        warnings = [f for f in campaign.findings if f.level == "warning"][:_MOST_WARNINGS]
+        if not warnings:
+            raise
+        told = [InputError(f.text, where=f.record or "") for f in warnings]
+        advice = "reading warned of what is said after the first line: it may be why"
+        raise InputErrors([error, *told], advice=advice) from None
 
 
 @contextlib.contextmanager

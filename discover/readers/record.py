@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from discover.readers.clipping import clipped_motion_text, clipping_text
 from discover.readers.columns import (
     QUANTITIES,
     Columns,
@@ -22,8 +23,9 @@ from discover.readers.source import Source
 from discover.readers.units import SMALLEST
 from discover.record_kind import classify
 from discover.records import Finding, Record
-from models.checks import Array, InputError, shown
+from models.checks import InputError, shown
 
+_FEW = 50  # samples, below which a warning says so
 _MAY_LACK = tuple(name for name in QUANTITIES if name not in ("time", "force"))
 
 
@@ -106,9 +108,12 @@ def read_record(
             found = f"{values[name][0]:.6g} throughout"
             raise InputError(name, expected="varying", found=found, where=file)
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
-    clipped = clipping_text(values["force"])
-    if clipped:
-        findings.append(Finding("warning", clipped, file))
+    odd = [clipping_text(values["force"])]
+    if has_motion:
+        odd.append(clipped_motion_text(values["displacement"]))
+        if values["force"].size < _FEW:
+            odd.append(f"only {values['force'].size} samples: too few to tell a law from noise")
+    findings += [Finding("warning", text, file) for text in odd if text]
     values = dict(sampled.columns)
     for order, name in enumerate(("velocity", "acceleration"), start=1):
         if name not in values:
@@ -166,41 +171,3 @@ def _within(columns: Columns, entry: Entry, file: str) -> Columns:
         )  # fmt: skip
     values = {name: column[inside] for name, column in columns.values.items()}
     return replace(columns, values=values, raw_time=columns.raw_time[inside])
-
-
-def clipping_text(force: Array) -> str:
-    """Return what to tell about a force that stays at its extreme value, else an empty string.
-
-    A smooth extreme passes through neighbouring values too, even when quantised; a clipped one
-    piles its samples up on exactly one value.
-
-    Examples
-    --------
-    >>> x = np.sin(np.arange(2000) / 50.0)
-    >>> clipping_text(x), clipping_text(np.clip(x, -0.9, 0.9)) != ""
-    ('', True)
-    """
-    parts = []
-    for sign, name in ((1.0, "largest"), (-1.0, "smallest")):
-        signed = sign * force
-        top = float(signed.max())
-        at_top = signed == top
-        count = int(np.count_nonzero(at_top))
-        edges = np.flatnonzero(np.diff(np.r_[0, at_top.astype(np.int8), 0]))
-        longest = int((edges[1::2] - edges[::2]).max())
-        if longest < 4 or count < 8:
-            continue
-        below = signed[~at_top]
-        if below.size == 0:
-            continue
-        second = float(below.max())
-        # A quantised smooth peak has 2.4 times as many samples at its top value as at the next.
-        if count > 6 * int(np.count_nonzero(below == second)):
-            share = 100.0 * count / force.size
-            parts.append(f"{name} value {sign * top:.6g} N for {count} samples ({share:.2g} %)")
-    if not parts:
-        return ""
-    return (
-        "the force stays at its " + " and its ".join(parts) + ": the channel looks clipped; "
-        "raise its range and measure again, or leave the record out"
-    )

@@ -214,6 +214,26 @@ def test_check_takes_one_file(here: Path, capsys: pytest.CaptureFixture[str]) ->
     assert not (here / "campaign.toml").exists()
 
 
+def test_an_error_comes_with_what_reading_warned_of(
+    here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from models.checks import InputError
+
+    def refuse(*_: object) -> None:
+        raise InputError("displacement", expected="motion", found="noise", where="a.csv")
+
+    x, force = _test(2.0)
+    table = np.column_stack([TIME, np.clip(1e3 * x, -6.0, 6.0), force])
+    header = "time [s],displacement [mm],force [N]"
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    monkeypatch.setattr("discover.data_check.check_campaign", refuse)
+    assert main(["check", "a.csv"]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "inerter: a.csv: displacement must be motion, got noise"
+    assert "displacement stays at its largest value 0.006 m" in lines[1]
+    assert lines[-1].endswith("it may be why")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(p.name for p in REAL.glob("*/")) if REAL.is_dir() else [])
 def test_measured_folders_without_their_campaign(here: Path, name: str) -> None:

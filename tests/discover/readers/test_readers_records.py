@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from discover.readers import read_campaign
+from discover.readers.clipping import clipped_motion_text, clipping_text
 from discover.readers.consistency import derivative_agreement
-from discover.readers.record import clipping_text
 from discover.readers.sampling import regular
 from discover.readers.source import row_place
 from discover.records import Campaign
@@ -255,6 +255,27 @@ def test_clipped_force_is_found_and_smooth_quantised_or_noisy_force_is_not(tmp_p
     for quantum in (1e-4, 0.01, 0.1, 0.3):
         assert clipping_text(quantum * np.round(FORCE / quantum)) == ""
     assert clipping_text(FORCE + 0.01 * rng.standard_normal(TIME.size)) == ""
+
+
+@pytest.mark.parametrize("share", [0.7, 0.9, 0.97])
+def test_a_clipped_displacement_is_told_from_a_drive_that_rests(
+    tmp_path: Path, share: float
+) -> None:
+    rng = np.random.default_rng(6)
+    x = DISPLACEMENT + 0.005 * rng.standard_normal(TIME.size)
+    found = _read(tmp_path, displacement=np.clip(x, -10.0 * share, 10.0 * share))
+    assert (
+        f"displacement stays at its largest value {0.01 * share:g} m for" in found.findings[0].text
+    )
+    ramp = np.clip(np.abs((TIME % 2.0) - 1.0) * 1.5 - 0.25, 0.0, 1.0)  # to and fro, with rests
+    eased = np.convolve(ramp, np.hanning(33) / np.hanning(33).sum(), mode="same")
+    assert clipped_motion_text(np.round(eased, 4)) == ""
+    assert clipped_motion_text(np.round(DISPLACEMENT, 1)) == ""
+
+
+def test_a_handful_of_samples_is_a_warning(tmp_path: Path) -> None:
+    found = _read(tmp_path, TIME[:16], DISPLACEMENT[:16], FORCE[:16])
+    assert "only 16 samples: too few to tell a law from noise" in found.findings[0].text
 
 
 @pytest.mark.parametrize("cycles", [2.3, 15.0])
