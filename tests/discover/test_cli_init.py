@@ -244,3 +244,12 @@ def test_measured_folders_without_their_campaign(here: Path, name: str) -> None:
     mine, theirs = read_campaign(name), read_campaign(REAL / name)
     assert {r.file for r in mine.records} == {r.file for r in theirs.records}
     assert [f for f in mine.findings if f.level == "error"] == []
+
+
+def test_tests_of_one_file_have_results_of_their_own(here: Path) -> None:
+    instruments.workbook(here / "tests.xlsx")
+    toml = '[device]\npreset = "device-12"\n[[records]]\nfile = "tests.xlsx"\nsheet = "*"\n'
+    (here / "campaign.toml").write_text(toml)
+    assert main(["simulate", "ioim-laminar", ".", "-o", "out"]) == 0
+    names = {p.name for p in (here / "out").iterdir()}
+    assert {"tests.xlsx [Test 1].csv", "tests.xlsx [Test 2].csv"} <= names
