@@ -23,7 +23,7 @@ def record_view(record: Record, *, name: str) -> str:
         Prefix of the picture's ids, unique on the page.
     """
     with house_style():
-        figure = new_figure(620, 230)
+        figure = new_figure(620, 310)
         grid = figure.add_gridspec(2, 2, width_ratios=(1.6, 1.0))
         upper = figure.add_subplot(grid[0, 0])
         lower = figure.add_subplot(grid[1, 0], sharex=upper)
@@ -42,6 +42,7 @@ def record_view(record: Record, *, name: str) -> str:
             loops.set_xlabel(f"Displacement ({unit})")
         for axes in (upper, lower, loops):
             axes.locator_params(nbins=4)
+        figure.align_ylabels([upper, lower])
         return to_svg(figure, name=name, title=f"Displacement and force of {record.file}")
 
 

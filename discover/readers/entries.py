@@ -30,6 +30,8 @@ class Entry:
     """Name, pattern or number from 1 of the sheet, group or table; None where not given."""
     channel: Mapping[str, str] = field(default_factory=dict)
     """Headers by quantity that are this record's own."""
+    channel_told: bool = False
+    """Whether its name has to tell them, since other records are of the same samples."""
     cells: str = ""
     """Range of a sheet's cells, "" for all."""
     span: tuple[float | None, float | None] = (None, None)
@@ -47,7 +49,8 @@ class Entry:
         >>> Entry("a.xlsx").label(""), Entry("a.xlsx", span_text="1 s : 2 s").label("Test 3")
         ('a.xlsx', 'a.xlsx [Test 3, 1 s : 2 s]')
         """
-        told = [part, *self.channel.values(), self.cells, self.span_text]
+        channels = self.channel.values() if self.channel_told else ()
+        told = [part, *channels, self.cells, self.span_text]
         inside = ", ".join(text for text in told if text)
         return f"{self.file} [{inside}]" if inside else self.file
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from discover.readers.columns import QUANTITIES
@@ -161,7 +163,7 @@ def read_entries(value: object) -> list[Entry]:
     for index, item in enumerate(value, start=1):
         where = f"[[records]] {index}"
         entry = _entry(_table(item, _RECORD, where=where), f"{_FILE} {where}")
-        same = f"{entry.label(str(entry.part or ''))}"
+        same = replace(entry, channel_told=True).label(str(entry.part or ""))
         if same in met:
             raise InputError(
                 "file", expected="listed once", found=f"{shown(same)} again",
@@ -169,7 +171,13 @@ def read_entries(value: object) -> list[Entry]:
             )  # fmt: skip
         met.add(same)
         entries.append(entry)
-    return entries
+    samples = Counter(_samples(entry) for entry in entries)
+    return [replace(e, channel_told=samples[_samples(e)] > 1) for e in entries]
+
+
+def _samples(entry: Entry) -> tuple[str, str]:
+    """Return what tells apart entries but for their channels."""
+    return entry.file, replace(entry, channel_told=False).label(str(entry.part or ""))
 
 
 def _entry(table: Mapping[str, Any], place: str) -> Entry:

@@ -76,7 +76,16 @@ def test_several_channels_of_one_table_are_several_records(tmp_path: Path) -> No
     with pytest.raises(InputError, match="column 'ai9' for force must be among the headers"):
         _campaign(tmp_path, one.format("ai9"))
     two = '[columns]\ndisplacement = "LVDT"\n[[records]]\nfile = "a.tdms"\nchannel = "Dev1/ai0"\n'
-    assert _campaign(tmp_path, two).records[0].file == "a.tdms [Dev1/ai0]"
+    assert _campaign(tmp_path, two).records[0].file == "a.tdms"
+    table = np.column_stack([TIME, STROKE, LOAD, 2.0 * LOAD])
+    header = "time [s],displacement [mm],Load 1 [kN],Load 2 [kN]"
+    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header=header, comments="")
+    both = "".join(f'[[records]]\nfile = "a.csv"\nchannel = "Load {i}"\n' for i in (1, 2))
+    first, second = _campaign(tmp_path, both).records
+    assert (first.file, second.file) == ("a.csv [Load 1]", "a.csv [Load 2]")
+    np.testing.assert_allclose(second.force, 2.0 * first.force)
+    with pytest.raises(InputError, match="file must be listed once, got 'a.csv .Load 1.' again"):
+        _campaign(tmp_path, both.replace("Load 2", "Load 1"))
 
 
 def test_a_workbook_with_cover_preamble_and_unit_row(tmp_path: Path) -> None:
