@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,6 +16,7 @@ from discover.readers.formats import OPENERS, open_book
 from discover.readers.guess import UNSURE, Guess, TableGuess, guess_table
 from discover.readers.record import read_record
 from discover.readers.source import Book, Source
+from discover.readers.toml_text import campaign_text
 from discover.records import Finding, Record
 from models.checks import InputError, printable
 
@@ -92,7 +92,13 @@ class Draft:
 
     def toml(self) -> str:
         """Return ``campaign.toml``, with why beside what was guessed."""
-        return _toml(self)
+        return campaign_text(
+            title=self.title,
+            device=self.device,
+            columns=self.columns,
+            units=self.units,
+            tests=[(record.entry, record.guess) for record in self.records],
+        )
 
 
 def draft_campaign(
@@ -159,10 +165,11 @@ def draft_campaign(
             found=(f"{file}: " if file and not why.startswith(file) else "") + why + more,
             where=str(folder),
         )
+    kept = {quantity for record in records for quantity in record.guess.columns}
     return Draft(
         title,
-        columns,
-        units,
+        {quantity: header for quantity, header in columns.items() if quantity in kept},
+        {quantity: unit for quantity, unit in units.items() if quantity in kept},
         _held_out(records),
         tuple(left_out),
         _doubts([r.guess for r in records], answers),
@@ -325,48 +332,3 @@ def _doubts(guesses: Sequence[TableGuess], answers: Answers) -> tuple[Doubt, ...
                 doubt = Doubt(quantity, "units", guess.unit, choices, why)
                 doubts.setdefault((quantity, "units"), doubt)
     return tuple(doubts.values())
-
-
-def _toml(draft: Draft) -> str:
-    lines = [f"title = {quoted(draft.title)}", ""]
-    if draft.device:
-        lines += ["[device]", f"preset = {quoted(draft.device)}", ""]
-    guesses = [record.guess.columns for record in draft.records]
-    if draft.columns:
-        lines.append("[columns]")
-        for quantity, header in draft.columns.items():
-            own = next(g[quantity] for g in guesses if quantity in g)
-            lines.append(f"{quantity} = {quoted(header)}  # {own.sure}: {printable(own.why)}")
-        lines.append("")
-    if draft.units:
-        lines.append("[units]")
-        lines += [f"{q} = {quoted(u)}  # no file states it" for q, u in draft.units.items()]
-        lines.append("")
-    for record in draft.records:
-        lines += [*_entry_lines(record.entry), ""]
-    return "\n".join(lines).rstrip("\n") + "\n"
-
-
-def _entry_lines(entry: Entry) -> list[str]:
-    lines = ["[[records]]", f"file = {quoted(entry.file)}"]
-    if entry.part is not None:
-        lines.append(f"{entry.key} = {quoted(str(entry.part))}")
-    if entry.channel:
-        inside = ", ".join(f"{q} = {quoted(h)}" for q, h in entry.channel.items())
-        lines.append(f"channel = {{ {inside} }}")
-    if entry.step is not None:
-        lines.append(f'sampling_rate = "{1.0 / entry.step:.12g} Hz"')
-    if entry.held_out:
-        lines.append("held_out = true")
-    return lines
-
-
-def quoted(text: str) -> str:
-    r"""Return a TOML basic string; JSON's escapes are among TOML's.
-
-    Examples
-    --------
-    >>> quoted('a "b"')
-    '"a \\"b\\""'
-    """
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

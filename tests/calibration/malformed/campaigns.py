@@ -47,8 +47,8 @@ def malformed_campaign(folder: Path, seed: int) -> None:
     (folder / "campaign.toml").write_bytes(toml)
     for index, name in enumerate(("0.csv", "1.csv", "2.csv")):
         content = record(1.0 + index)
-        if turn >= 0.55 and index < 2:
-            content = _spoilt(content, rng)
+        if turn >= 0.55 and index < 2 and rng.random() < 0.6:
+            content = _odd(content, rng) if rng.random() < 0.5 else _spoilt(content, rng)
         (folder / name).write_bytes(content)
 
 
@@ -154,6 +154,36 @@ def _spoilt(content: bytes, rng: random.Random) -> bytes:
     else:
         lines = lines[:row] + [HEADER.replace("force", "load")] + lines[row:]
     return "\n".join(lines).encode("utf-8", "replace")
+
+
+def _odd(content: bytes, rng: random.Random) -> bytes:
+    """Return a record that is well written, of something that no test should be."""
+    rows = np.array([line.split(",") for line in content.decode().splitlines()[1:]], dtype=float)
+    time, x, force = rows.T.copy()
+    kind = rng.randrange(10)
+    noise = np.random.default_rng(rng.randrange(2**32)).standard_normal(time.size)
+    if kind == 0:
+        x = np.round(x / 4.0) * 4.0  # the sensor's steps are as large as the motion
+    elif kind == 1:
+        x = x + 10.0 ** rng.choice((3, 6, 9))
+    elif kind == 2:
+        force = force + 10.0 ** rng.choice((3, 6, 9))
+    elif kind == 3:
+        x = np.where(time < 2.0, 0.0, x[-1])  # one step
+    elif kind == 4:
+        force = noise
+    elif kind == 5:
+        x = np.cumsum(noise)
+    elif kind == 6:
+        x = np.clip(x, -rng.random(), rng.random())
+    elif kind == 7:
+        x, force = x * 10.0 ** rng.randrange(-9, 9), force * 10.0 ** rng.randrange(-9, 9)
+    elif kind == 8:
+        time = np.cumsum(0.01 * np.exp(rng.choice((0.5, 2.0)) * noise))
+    else:
+        force = np.where(np.arange(time.size) == 200, 1.0, 0.0)  # one sample
+    lines = [f"{t:.9g},{a:.9g},{f:.9g}" for t, a, f in zip(time, x, force, strict=True)]
+    return (HEADER + "\n" + "\n".join(lines) + "\n").encode()
 
 
 def _put(line: str, column: int, value: str) -> str:
