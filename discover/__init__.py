@@ -8,11 +8,13 @@ True
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
 from discover._version import __version__
 
+TYPE_CHECKING = False  # as of typing, whose import the command need not wait for
 if TYPE_CHECKING:
+    from typing import Any
+
     from discover.data_check import check_campaign
     from discover.gap import close_gap
     from discover.readers import read_campaign
@@ -36,7 +38,7 @@ _HOMES = {
 }
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     """Load what is asked for only then: the command's help need not wait for the numerics."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -2,7 +2,7 @@
 
 import sys
 
-from discover.cli import main
+from discover.cli import program
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(program())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -246,7 +247,8 @@ def _findings(
 
 
 def _table_name(file: str, taken: Mapping[str, str]) -> str:
-    stem = file.rsplit(".", 1)[0].replace("/", "-").replace("\\", "-")
+    whole = not file.endswith("]")  # else a part of a file, named after it in brackets
+    stem = re.sub(r'[\\/:*?"<>|]', "-", file.rsplit(".", 1)[0] if whole else file)
     name, count = f"{stem}.csv", 1
     while name in taken:
         count += 1

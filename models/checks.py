@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import unicodedata
 from collections.abc import Iterable
 from typing import Any
 
@@ -12,6 +13,43 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int_]
+
+LONGEST = 400
+"""Characters of any part of a message: files hold headers and fields of any length."""
+
+
+_LONGEST_NAME = 120
+
+
+def printable(text: str, *, longest: int = LONGEST) -> str:
+    r"""Return `text` fit for one line: control characters escaped, what is too long cut.
+
+    Examples
+    --------
+    >>> printable("force\x1b[2J\n[kN]"), printable("abcdefgh", longest=6)
+    ('force\\x1b[2J\\n[kN]', 'abcde…')
+    """
+    cut = text if len(text) <= longest else text[: longest - 1] + "…"
+    return "".join(c if _plain(c) else c.encode("unicode_escape").decode() for c in cut)
+
+
+def _plain(character: str) -> bool:
+    return character.isprintable() or unicodedata.category(character) == "Zs"
+
+
+def shown(value: object, *, longest: int = 80) -> str:
+    """Return a value of a user's file as a message shows it, however large it is.
+
+    Examples
+    --------
+    >>> shown("kN"), shown(10**5000), shown([1] * 99, longest=8)
+    ("'kN'", 'a very large number', '[1, 1, …')
+    """
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no integer of thousands of digits
+        return "a very large number"
+    return printable(text, longest=longest)
 
 
 class InputError(ValueError):
@@ -32,9 +70,9 @@ class InputError(ValueError):
     '--orders: order must be in [0, 2], got 2.4'
     """
 
-    def __init__(
-        self, what: str, *, expected: str = "", found: str = "", where: str = ""
-    ) -> None:
+    def __init__(self, what: str, *, expected: str = "", found: str = "", where: str = "") -> None:
+        what, found, where = (printable(part) for part in (what, found, where))
+        expected = printable(expected, longest=2 * LONGEST)  # it may list what there is
         text = what
         if expected:
             text += f" must be {expected}"
@@ -45,6 +83,35 @@ class InputError(ValueError):
         self.expected = expected
         self.found = found
         self.where = where
+
+
+class InputErrors(InputError):
+    """Several things that can't be worked on, so that one run tells them all.
+
+    Parameters
+    ----------
+    errors : iterable of InputError
+        At least one.
+    advice : str
+        What to do about them.
+
+    Examples
+    --------
+    >>> print(InputErrors([InputError("a.csv"), InputError("b.csv")], advice="mend both"))
+    a.csv
+    b.csv
+    mend both
+    """
+
+    def __init__(self, errors: Iterable[InputError], *, advice: str) -> None:
+        self.errors = tuple(errors)
+        first = self.errors[0]
+        super().__init__(first.what, expected=first.expected, found=first.found, where=first.where)
+        self.lines = (*(str(error) for error in self.errors), printable(advice))
+
+    def __str__(self) -> str:
+        """Return one line an error, then the advice."""
+        return "\n".join(self.lines)
 
 
 def number(
@@ -77,8 +144,8 @@ def number(
     expected = "a finite number" + (" " + " and ".join(bounds) if bounds else "")
     try:
         result = float(value)
-    except (TypeError, ValueError):
-        raise InputError(name, expected=expected, found=repr(value), where=where) from None
+    except (TypeError, ValueError, OverflowError):  # the last of integers beyond 1e308
+        raise InputError(name, expected=expected, found=shown(value), where=where) from None
     outside = (
         not math.isfinite(result)
         or (above is not None and not result > above)
@@ -87,8 +154,25 @@ def number(
         or (at_most is not None and not result <= at_most)
     )
     if outside:
-        raise InputError(name, expected=expected, found=repr(value), where=where)
+        raise InputError(name, expected=expected, found=shown(value), where=where)
     return result
+
+
+def stored_number(name: str, value: Any, *, where: str = "", size: float = 1e30) -> float:
+    """Return a number of a document: neither text nor true, and of a size that can be squared.
+
+    Examples
+    --------
+    >>> stored_number("coefficient", 3)
+    3.0
+    >>> stored_number("coefficient", True, where="model.json")
+    Traceback (most recent call last):
+        ...
+    models.checks.InputError: model.json: coefficient must be a number, got True
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(name, expected="a number", found=shown(value), where=where)
+    return number(name, value, at_least=-size, at_most=size, where=where)
 
 
 def finite_array(
@@ -130,6 +214,8 @@ def finite_array(
 def nearest(text: str, choices: Iterable[str]) -> str:
     """Return " (did you mean 'x'?)" for a near name, else an empty string.
 
+    What is longer than a name is near to none.
+
     Examples
     --------
     >>> nearest("frequncy", ["frequency", "file"])
@@ -137,7 +223,9 @@ def nearest(text: str, choices: Iterable[str]) -> str:
     >>> nearest("stribek", ["stiffness", "stribeck-friction"])
     " (did you mean 'stribeck-friction'?)"
     """
-    names = list(choices)
+    if len(text) > _LONGEST_NAME:
+        return ""
+    names = [name for name in choices if len(name) <= _LONGEST_NAME]
     close = difflib.get_close_matches(text.lower(), names, n=1, cutoff=0.7)
     first = {n.partition("-")[0]: n for n in reversed(names)}
     close += [first[w] for w in difflib.get_close_matches(text.lower(), first, n=1, cutoff=0.7)]
@@ -156,6 +244,6 @@ def one_of(name: str, value: str, choices: Iterable[str], *, where: str = "") ->
     if value not in listed:
         near = nearest(value, listed) if isinstance(value, str) else ""  # a user's file may err
         raise InputError(
-            name, expected="one of " + ", ".join(listed), found=repr(value) + near, where=where
+            name, expected="one of " + ", ".join(listed), found=shown(value) + near, where=where
         )
     return value

@@ -8,20 +8,27 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models.checks import Array, InputError, number
+from models.checks import Array, InputError, number, one_of, shown, stored_number
 from models.device import Device
 from models.flow import critical_frequency
 from models.fractional import harmonic_factors
 from models.motion import Motion
 from models.terms import TERMS, Shape, Term, find_term, own_terms
 from models.terms.own import same_file
-from models.terms.term import Changed, ForceOf
+from models.terms.term import Changed, ForceOf, Parameter
+
+SCHEMA = "inerter.model/1"
+"""Of the document that a model is stored in."""
+COORDINATES = ("dean", "speed", "frequency")
+"""What bands lie on."""
+_ROUNDED = 1e-6  # of a bound: stored values are rounded
 
 WHOLE_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
 """Of the derivative of displacement that a term is."""
@@ -73,9 +80,7 @@ class FittedTerm:
 
         A user's own term comes with its file's name and hash.
         """
-        result = {
-            "id": self.id, "coefficient": self.coefficient, "unit": self.unit, **self.shape
-        }
+        result = {"id": self.id, "coefficient": self.coefficient, "unit": self.unit, **self.shape}
         source = self.term.source
         return result if source is None else {**result, "source": source.to_dict()}
 
@@ -89,13 +94,39 @@ class FittedTerm:
             For what is no term, and for a user's own that is not in the vocabulary from the same
             file: wrap the call in `models.terms.own_terms`.
         """
+        if not isinstance(data, Mapping):
+            raise InputError("a term", expected="a table", found=shown(data), where=where)
         for key in ("id", "coefficient"):
             if key not in data:
                 raise InputError(f"key {key!r} of a term", expected="given", where=where)
-        _check_source(str(data["id"]), data.get("source"), where)
-        names = {p.name for p in find_term(str(data["id"]), where=where).parameters}
-        shape = {k: float(v) for k, v in data.items() if k in names}
-        return cls(str(data["id"]), number("coefficient", data["coefficient"], where=where), shape)
+        identifier = data["id"]
+        if not isinstance(identifier, str):
+            raise InputError("id of a term", expected="text", found=shown(identifier), where=where)
+        _check_source(identifier, data.get("source"), where)
+        parameters = find_term(identifier, where=where).parameters
+        shape = {p.name: _stored(p, data[p.name], identifier, where)
+                 for p in parameters if p.name in data}  # fmt: skip
+        size = stored_number(f"coefficient of {identifier}", data["coefficient"], where=where)
+        try:
+            return cls(identifier, size, shape)
+        except InputError as error:  # a parameter that is not given
+            raise InputError(
+                error.what, expected=error.expected, found=error.found, where=where
+            ) from None
+
+
+def _stored(parameter: Parameter, value: Any, identifier: str, where: str) -> float:
+    """Return a shape parameter of a document, within its bounds where those are absolute."""
+    name = f"{identifier}.{parameter.name}"
+    result = stored_number(name, value, where=where)
+    lower, upper = parameter.lower, parameter.upper
+    if parameter.scaled_by:  # bounds in units of a campaign: only the sign is known
+        lower, upper = (0.0 if lower > 0.0 else -np.inf), np.inf
+    slack = _ROUNDED * max(abs(lower), abs(upper), 1.0) if np.isfinite(upper) else 0.0
+    if result != parameter.default and not lower - slack <= result <= upper + slack:
+        expected = f"from {lower:g} to {upper:g}"
+        raise InputError(name, expected=expected, found=f"{result:g}", where=where)
+    return result
 
 
 def _own(term: Term, identifier: str, coefficient: float, shape: Shape) -> FittedTerm:
@@ -110,7 +141,7 @@ def _check_source(identifier: str, source: Any, where: str) -> None:
         return
     if not isinstance(source, Mapping) or not isinstance(source.get("sha256"), str):
         raise InputError(
-            f"source of {identifier!r}", expected="a file with its sha256", found=repr(source),
+            f"source of {identifier!r}", expected="a file with its sha256", found=shown(source),
             where=where,
         )  # fmt: skip
     if identifier not in TERMS:
@@ -195,10 +226,11 @@ class ForceModel:
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], *, where: str = "") -> ForceModel:
         """Read what `to_dict` wrote."""
-        if not isinstance(data.get("terms"), Sequence):
-            raise InputError("terms", expected="a list", found=repr(data.get("terms")), where=where)
+        if not isinstance(data.get("terms"), list | tuple):
+            found = shown(data.get("terms"))
+            raise InputError("terms", expected="a list", found=found, where=where)
         terms = tuple(FittedTerm.from_dict(t, where=where) for t in data["terms"])
-        return cls(terms, str(data.get("name", "")))
+        return cls(terms, _text(data, "name", where))
 
 
 @dataclass(frozen=True)
@@ -268,27 +300,66 @@ class SegmentedModel:
         InputError
             For what is no such document.
         """
-        if not isinstance(data.get("bands"), Sequence) or not data["bands"]:
-            raise InputError("bands", expected="a list of bands", found="none", where=where)
-        device = Device.from_dict(data["device"]) if data.get("device") else None
-        bands = tuple(
-            Band(b.get("lower"), b.get("upper"), ForceModel.from_dict(b, where=where))
-            for b in data["bands"]
-        )
-        coordinate = str(data["bands"][0].get("coordinate", "speed"))
-        convention = str(data.get("convention", "paper"))
+        schema = data.get("schema", SCHEMA)
+        if schema != SCHEMA:
+            raise InputError("schema", expected=repr(SCHEMA), found=shown(schema), where=where)
+        listed = data.get("bands")
+        if not isinstance(listed, list | tuple) or not listed:
+            raise InputError("bands", expected="a list of bands", found=shown(listed), where=where)
+        device = data.get("device")
+        if device is not None:
+            device = Device.from_dict(device, where=f"{where} device".strip())
+        bands = tuple(_band(table, where) for table in listed)
+        for below, above in pairwise(bands):
+            if below.upper is None or above.lower is None or above.lower < below.upper:
+                found = f"one up to {below.upper}, then one from {above.lower}"
+                raise InputError("bands", expected="in rising order", found=found, where=where)
+        coordinates = {_text(table, "coordinate", where, "speed") for table in listed}
+        if len(coordinates) > 1:
+            found = " and ".join(sorted(coordinates))
+            raise InputError("coordinate", expected="one for all bands", found=found, where=where)
+        (coordinate,) = coordinates
+        one_of("coordinate", coordinate, COORDINATES, where=where)
+        convention = _text(data, "convention", where, "paper")
+        one_of("convention", convention, ("paper", "standard"), where=where)
         added = _added(data.get("added", []), bands, where)
-        return cls(bands, coordinate, convention, device, str(data.get("name", "")), added)
+        return cls(bands, coordinate, convention, device, _text(data, "name", where), added)
+
+
+def _band(table: Any, where: str) -> Band:
+    """Return one band of a document."""
+    if not isinstance(table, Mapping):
+        raise InputError("a band", expected="a table", found=shown(table), where=where)
+    lower, upper = (
+        None if table.get(key) is None else stored_number(key, table[key], where=where)
+        for key in ("lower", "upper")
+    )
+    if lower is not None and upper is not None and not lower < upper:
+        raise InputError(
+            "band", expected="with lower below upper", found=f"{lower:g} to {upper:g}", where=where
+        )
+    return Band(lower, upper, ForceModel.from_dict(table, where=where))
+
+
+def _text(data: Mapping[str, Any], key: str, where: str, default: str = "") -> str:
+    value = data.get(key, default)
+    if not isinstance(value, str):
+        raise InputError(key, expected="text", found=shown(value), where=where)
+    return value
 
 
 def _added(ids: Any, bands: Sequence[Band], where: str) -> tuple[str, ...]:
     if not isinstance(ids, list):
-        raise InputError("added", expected="a list of ids", found=repr(ids), where=where)
+        raise InputError("added", expected="a list of ids", found=shown(ids), where=where)
+    if not all(isinstance(name, str) for name in ids):
+        raise InputError("added", expected="a list of ids", found=shown(ids), where=where)
     for band in bands:
         last = [t.id for t in band.model.terms][len(band.model.terms) - len(ids) :]
         if last != ids:
             raise InputError(
-                "added", expected="the ids of the last terms of every band", found=repr(ids),
+                "added",
+                expected="the ids of the last terms of every band",
+                found=shown(ids),
                 where=where,
             )
     return tuple(ids)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, NamedTuple
 
-from models.checks import InputError, number, one_of
+from models.checks import InputError, number, one_of, shown, stored_number
 
 
 @dataclass(frozen=True)
@@ -281,6 +281,8 @@ class Device:
         >>> Device.from_dict({"preset": "device-12", "inertance": 380.0}).inertance_source
         'measured'
         """
+        if not isinstance(table, Mapping):
+            raise InputError("device", expected="a table", found=shown(table), where=where)
         values = {key: value for key, value in table.items() if key != "preset"}
         if "inertance" in values:
             values["measured_inertance"] = values.pop("inertance")
@@ -289,12 +291,16 @@ class Device:
             if key not in known:
                 listed = ", ".join(sorted(known - {"measured_inertance"} | {"inertance", "preset"}))
                 raise InputError(key, expected=f"one of {listed}", found="unknown key", where=where)
-        base = cls.preset(str(table["preset"])) if table.get("preset") is not None else None
+        preset = table.get("preset")
+        for key, text in (("preset", preset), ("name", values.get("name", ""))):
+            if text is not None and not isinstance(text, str):
+                raise InputError(key, expected="text", found=shown(text), where=where)
+        base = cls.preset(preset) if preset is not None else None
         if "fluid" in values and not isinstance(values["fluid"], Fluid):
             values["fluid"] = _fluid(values["fluid"], base, where=where)
         for key, value in values.items():
             if key not in ("fluid", "name") and value is not None:
-                values[key] = number(key, value, where=where)
+                values[key] = stored_number(key, value, where=where)
         if base is not None:
             return replace(base, **values)
         required = ("rod_radius", "cylinder_radius", "channel_radius", "helix_radius")
@@ -307,11 +313,12 @@ class Device:
 def _fluid(table: object, base: Device | None, *, where: str) -> Fluid:
     """Return the fluid of a `[device.fluid]` table, gaps filled from the preset's."""
     if not isinstance(table, Mapping):
-        raise InputError("fluid", expected="a table", found=repr(table), where=where)
+        raise InputError("fluid", expected="a table", found=shown(table), where=where)
     merged = {} if base is None else asdict(base.fluid)
     for key, value in table.items():
         one_of("key", key, ("density", "viscosity"), where=f"{where}.fluid")
-        merged[key] = number(key, value, above=0.0, where=f"{where}.fluid")
+        place = f"{where}.fluid"
+        merged[key] = number(key, stored_number(key, value, where=place), above=0.0, where=place)
     for key in ("density", "viscosity"):
         if key not in merged:
             raise InputError(key, expected="given", found="nothing", where=f"{where}.fluid")

@@ -16,15 +16,20 @@ from discover.cli.check import check
 from discover.cli.design import design
 from discover.cli.discover import discover
 from discover.cli.gap import gap
+from discover.cli.init import init
 from discover.cli.invocation import Invocation
 from discover.cli.reproduce import reproduce
+from discover.cli.results import one_run
+from discover.cli.signals import leaving
 from discover.cli.simulate import simulate
 from discover.cli.synth import synth
-from models.checks import InputError
+from models.checks import InputError, InputErrors, printable
 
 BAD_INPUT = 2
 INTERRUPTED = 130
 INTERNAL_ERROR = 70
+
+_LONGEST = 1900  # characters of a line, with what the terminal or a log puts before it
 
 app = typer.Typer(
     name="inerter",
@@ -34,7 +39,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for verb in (check, discover, gap, simulate, synth, design, reproduce):
+for verb in (init, check, discover, gap, simulate, synth, design, reproduce):
     app.command(verb.__name__)(verb)
 
 
@@ -73,15 +78,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not sys.warnoptions:  # what a user should know is a finding in the document
         warnings.simplefilter("ignore")
     try:
-        result = typer.main.get_command(app).main(
-            args=list(given), prog_name="inerter", standalone_mode=False, obj=Invocation(given)
-        )
+        with one_run():
+            result = _run(given)
         if result == INTERRUPTED:  # newer typer turns the interrupt into this code by itself
             raise KeyboardInterrupt
         sys.stdout.flush()
+    except InputErrors as error:
+        for line in error.lines:
+            _complain(line, BAD_INPUT)
+        return BAD_INPUT
     except InputError as error:
         return _complain(str(error), BAD_INPUT)
     except (KeyboardInterrupt, typer.Abort):
+        leaving()
         # An interrupt of code in a string, as imports run it, would have Python leave by the
         # signal whatever is returned here, until other code in a string has run.
         exec("")
@@ -104,10 +113,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
             " INERTER_DEBUG=1 shows where",
             INTERNAL_ERROR,
         )
-    return int(result or 0)
+    return result if isinstance(result, int) else 0
+
+
+def _run(given: Sequence[str]) -> object:
+    command = typer.main.get_command(app)
+    return command.main(
+        args=list(given), prog_name="inerter", standalone_mode=False, obj=Invocation(tuple(given))
+    )
 
 
 def _complain(text: str, code: int) -> int:
     """Print one line on stderr and return `code`."""
-    print("inerter: " + " ".join(text.split()), file=sys.stderr)
+    print("inerter: " + printable(" ".join(text.split()), longest=_LONGEST), file=sys.stderr)
     return code

@@ -8,7 +8,7 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation
-from discover.cli.results import deliver, result_folder, working
+from discover.cli.results import after_reading, deliver, result_folder, working
 from discover.cli.shipped import shipped_campaign
 
 FAILED = 1
@@ -34,7 +34,9 @@ def check(
     from discover.report.check import check_figures, check_lines, check_report
 
     with working(f"Checking {source}"):
-        answer = check_campaign(read_campaign(source), seed=seed, jobs=jobs)
+        measured = read_campaign(source)
+        with after_reading(measured):
+            answer = check_campaign(measured, seed=seed, jobs=jobs)
     with working("Drawing"):
         document = answer.to_dict()
         figures = check_figures(document, answer.figure_data)

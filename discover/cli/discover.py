@@ -6,9 +6,9 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation
-from discover.cli.results import deliver, result_folder, working
+from discover.cli.results import after_reading, deliver, result_folder, working
 from discover.cli.shipped import shipped_campaign
-from models.checks import one_of
+from models.checks import number, one_of
 
 
 def discover(
@@ -31,8 +31,9 @@ def discover(
     if coordinate is not None:
         one_of("coordinate", coordinate, ("dean", "speed", "frequency"), where="--coordinate")
     only = options.identifiers(terms, where="--terms")
-    order_grid = options.grid(orders, where="--orders")
-    exponent_grid = options.grid(exponents, where="--exponents")
+    order_grid = options.grid(orders, where="--orders", at_least=-1.0, at_most=2.0)
+    exponent_grid = options.grid(exponents, where="--exponents", at_least=0.1, at_most=5.0)
+    number("criterion", criterion, above=0.0, at_most=1e6, where="--criterion")
     source = shipped_campaign() if campaign is None else campaign
     folder = result_folder("discover", source, out)
 
@@ -45,7 +46,7 @@ def discover(
 
     with working(f"Reading {source}"):
         measured = read_campaign(source)
-    with working(f"Studying {len(measured.records)} records"):
+    with working(f"Studying {len(measured.records)} records"), after_reading(measured):
         study = run_study(
             measured,
             StudyOptions(

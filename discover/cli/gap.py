@@ -9,7 +9,7 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation
-from discover.cli.results import deliver, result_folder, working
+from discover.cli.results import after_reading, deliver, result_folder, working
 from models.checks import one_of
 
 _FIT = "fit:"
@@ -88,7 +88,7 @@ def gap(
     device = measured.device
     first = model in FRACTIONAL and device is not None and not paper_values(model, device)
     chosen = model if first or model.startswith(_FIT) else named_model(model, device)
-    with working(f"Comparing {len(measured.records)} records") as tell:
+    with working(f"Comparing {len(measured.records)} records") as tell, after_reading(measured):
         found = close_gap(
             measured, chosen, fixed=fixed, effects=named, seed=seed, jobs=jobs, tell=tell
         )

@@ -13,6 +13,16 @@ class Invocation:
     arguments: tuple[str, ...]
     """As given."""
 
+    def plain(self) -> str:
+        """Return the command as it was typed.
+
+        Examples
+        --------
+        >>> Invocation(("init", "my rig")).plain()
+        "inerter init 'my rig'"
+        """
+        return shlex.join(["inerter", *self.arguments])
+
     def repeat(self, *, seed: int) -> str:
         """Return the command that repeats the work, its seed written out.
 

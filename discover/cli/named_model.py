@@ -119,8 +119,8 @@ def _from_file(name: str, *, where: str) -> SegmentedModel:
             where=where,
         )
     try:
-        table = json.loads(path.read_text(encoding="utf-8"))
-    except (UnicodeDecodeError, json.JSONDecodeError) as error:
+        table = json.loads(path.read_text(encoding="utf-8-sig"))
+    except (ValueError, RecursionError) as error:  # of integers of 5,000 digits and of nesting too
         raise InputError("not valid JSON", found=str(error), where=name) from None
     if not isinstance(table, dict):
         raise InputError("model", expected="a JSON object", found=type(table).__name__, where=name)

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from models.checks import InputError, number
+from models.checks import InputError, number, shown
 
 DEFAULT_SEED = 0
 MOST_VALUES = 1000
@@ -17,7 +17,8 @@ ShippedCampaign = Annotated[
     Path | None,
     typer.Argument(
         metavar="[CAMPAIGN]",
-        help="Folder with campaign.toml and its records [default: the shipped one].",
+        help="Folder with campaign.toml and its records, or one file of records"
+        " [default: the shipped one].",
         show_default=False,
     ),
 ]
@@ -79,8 +80,19 @@ EffectFiles = Annotated[
 ]
 
 
-def grid(text: str | None, *, where: str) -> tuple[float, ...] | None:
+def grid(
+    text: str | None, *, where: str, at_least: float | None = None, at_most: float | None = None
+) -> tuple[float, ...] | None:
     """Return the values of ``start:stop:step`` (both ends in) or ``a,b,c``; None for none.
+
+    Parameters
+    ----------
+    text : str or None
+        As typed.
+    where : str
+        The option.
+    at_least, at_most : float, optional
+        Bounds of every value.
 
     Raises
     ------
@@ -97,13 +109,18 @@ def grid(text: str | None, *, where: str) -> tuple[float, ...] | None:
     if text is None:
         return None
     if ":" not in text:
-        return tuple(number("value", part.strip(), where=where) for part in text.split(","))
+        return tuple(
+            number("value", part.strip(), at_least=at_least, at_most=at_most, where=where)
+            for part in text.split(",")
+        )
     parts = text.split(":")
     if len(parts) != 3:
         raise InputError("grid", expected="start:stop:step or a,b,c", found=text, where=where)
     start, stop, step = (
-        number(name, part.strip(), where=where)
-        for name, part in zip(("start", "stop", "step"), parts, strict=True)
+        number(name, part.strip(), at_least=low, at_most=at_most, where=where)
+        for name, part, low in zip(
+            ("start", "stop", "step"), parts, (at_least, at_least, None), strict=True
+        )
     )
     if step <= 0.0 or stop < start:
         raise InputError("grid", expected="rising, with a step above 0", found=text, where=where)
@@ -134,7 +151,7 @@ def identifiers(text: str | None, *, where: str) -> tuple[str, ...] | None:
     parts = tuple(part.strip() for part in text.split(","))
     if not all(parts):
         raise InputError(
-            "list", expected="ids parted by single commas", found=repr(text), where=where
+            "list", expected="ids parted by single commas", found=shown(text), where=where
         )
     twice = next((p for p in parts if parts.count(p) > 1), None)
     if twice is not None:

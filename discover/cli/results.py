@@ -7,28 +7,84 @@ import io
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextvars import ContextVar
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 from rich.console import Console
 
 from discover.report.document import json_text
 from discover.report.folder import check_replaceable, write_folder
+from discover.report.lock import folder_lock
+from models.checks import InputError, InputErrors
+
+if TYPE_CHECKING:
+    from discover.records import Campaign
+
+_MOST_WARNINGS = 5
+_run: ContextVar[contextlib.ExitStack | None] = ContextVar("run", default=None)
+
+
+@contextlib.contextmanager
+def one_run() -> Iterator[None]:
+    """Let go at the end of the block of what a run holds: the lock on its folder of results."""
+    with contextlib.ExitStack() as stack:
+        token = _run.set(stack)
+        try:
+            yield
+        finally:
+            _run.reset(token)
 
 
 def result_folder(verb: str, campaign: str | Path, out: Path | None) -> Path:
-    """Return the folder that results go to, refused early where it can't be written.
+    """Return the folder that results go to, held for this run, refused early where it can't be.
 
     Raises
     ------
     InputError
-        Where it holds something that is not an earlier result.
+        Where it holds something that is not an earlier result, or another run writes to it.
     """
     name = Path(campaign).resolve().name or "campaign"
     folder = Path("inerter-out", f"{verb}-{name}") if out is None else out
+    hold_folder(folder)
     check_replaceable(folder)
     return folder
+
+
+def hold_folder(folder: Path) -> None:
+    """Hold a folder until this run ends, so that no other run writes to it.
+
+    Raises
+    ------
+    InputError
+        Where another run holds it.
+    """
+    stack = _run.get()
+    if stack is not None:
+        stack.enter_context(folder_lock(folder))
+
+
+@contextlib.contextmanager
+def after_reading(campaign: Campaign) -> Iterator[None]:
+    """Tell beside an error what reading the campaign warned of: it may be why.
+
+    Raises
+    ------
+    InputErrors
+        For an `InputError` in the block, where there were warnings.
+    """
+    try:
+        yield
+    except InputErrors:
+        raise
+    except InputError as error:
+        warnings = [f for f in campaign.findings if f.level == "warning"][:_MOST_WARNINGS]
+        if not warnings:
+            raise
+        told = [InputError(f.text, where=f.record or "") for f in warnings]
+        advice = "reading warned of what is said after the first line: it may be why"
+        raise InputErrors([error, *told], advice=advice) from None
 
 
 @contextlib.contextmanager

@@ -8,7 +8,7 @@ import typer
 
 from discover.cli import options
 from discover.cli.results import deliver, result_folder, working
-from models.checks import InputError
+from models.checks import InputError, shown
 
 
 def simulate(
@@ -34,7 +34,7 @@ def simulate(
     *names, campaign = arguments
     if not names:
         raise InputError(
-            "arguments", expected="models and then a campaign", found=repr(campaign),
+            "arguments", expected="models and then a campaign", found=shown(campaign),
             where="simulate",
         )  # fmt: skip
     twice = next((n for n in names if names.count(n) > 1), None)

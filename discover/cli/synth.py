@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import shlex
 from pathlib import Path
@@ -12,12 +11,13 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation
-from discover.cli.results import working
+from discover.cli.results import hold_folder, working
 from discover.report.folder import check_replaceable, write_folder
 from discover.report.words import counted
 from models.checks import InputError
 
 _AMPLITUDES = "5,10,20"
+_LARGEST = 100.0  # of noise or a hidden effect over the force
 
 
 def synth(
@@ -86,8 +86,9 @@ def synth(
         )
     share = fraction(noise, where="--noise")
     sizes = dict(_hidden(item) for item in hide or ())
-    grid_hz = options.grid(frequencies, where="--frequencies")
-    grid_mm = options.grid(amplitudes, where="--amplitudes") or ()
+    grid_hz = options.grid(frequencies, where="--frequencies", at_least=1e-3, at_most=1e3)
+    grid_mm = options.grid(amplitudes, where="--amplitudes", at_least=1e-3, at_most=1e4) or ()
+    hold_folder(folder)
     check_replaceable(folder, fresh=True)
 
     from discover.cli.known_device import known_device
@@ -156,7 +157,7 @@ def fraction(text: str, *, where: str) -> float:
         size = float(plain.removesuffix("%")) / (100.0 if percent else 1.0)
     except ValueError:
         size = -1.0
-    if not 0.0 <= size <= (math.inf if percent else 1.0) or math.isinf(size):
+    if not 0.0 <= size <= (_LARGEST if percent else 1.0):
         raise InputError("size", expected="a share as 3% or 0.03", found=repr(plain), where=where)
     return size
 

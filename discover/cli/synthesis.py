@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from discover.cli.named_model import named_model
+from discover.readers.toml_text import quoted
 from models.checks import Array
 from models.device import PRESETS, Device
 from models.flow import dean
@@ -157,7 +157,7 @@ def campaign_files(
         What the rig hid in the records.
     """
     lines = [f"# Simulated, by: {command}", *(f"# Hidden: {h}" for h in hidden)]
-    lines += [f"title = {_quoted(title)}", "", "[device]"]
+    lines += [f"title = {quoted(title)}", "", "[device]"]
     lines += _device_lines(device)
     lines += [
         "",
@@ -172,7 +172,7 @@ def campaign_files(
         lines += [
             "",
             "[[records]]",
-            f"file = {_quoted(record.file)}",
+            f"file = {quoted(record.file)}",
             f'frequency = "{record.frequency:.10g} Hz"',
             f'amplitude = "{1e3 * record.amplitude:.10g} mm"',
         ]
@@ -199,11 +199,6 @@ def _device_lines(device: Device) -> list[str]:
         f'density = "{device.fluid.density!r} kg/m^3"',
         f'viscosity = "{device.fluid.viscosity!r} Pa*s"',
     ]
-
-
-def _quoted(text: str) -> str:
-    """Return a TOML basic string; JSON's escapes are among TOML's."""
-    return json.dumps(text, ensure_ascii=False)
 
 
 def _csv(record: MadeRecord) -> str:

@@ -1,5 +1,6 @@
 """Reading campaigns: the only part that opens files, and the edge where units become SI."""
 
-from discover.readers.campaign import read_campaign
+from discover.readers.campaign import CAMPAIGN_FILE, read_campaign
+from discover.readers.draft import Answers, Draft, draft_campaign, record_files
 
-__all__ = ["read_campaign"]
+__all__ = ["CAMPAIGN_FILE", "Answers", "Draft", "draft_campaign", "read_campaign", "record_files"]

@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import hashlib
+import os
+import shlex
+import stat
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from discover.readers.binary_table import open_mat, open_npz, open_parquet
-from discover.readers.record import Entry, read_record
-from discover.readers.source import Source
+from discover.readers.choice import chosen_sources
+from discover.readers.draft import Answers, Draft, draft_campaign
+from discover.readers.entries import Entry, expanded
+from discover.readers.formats import OPENERS, open_book
+from discover.readers.guess import listed
+from discover.readers.plausibility import implausible
+from discover.readers.record import read_record
+from discover.readers.source import Book
 from discover.readers.tables import (
     read_column_names,
     read_column_units,
@@ -19,29 +28,23 @@ from discover.readers.tables import (
     read_rig,
     read_system,
 )
-from discover.readers.text_table import open_text
 from discover.records import Campaign, Finding, Record
-from models.checks import InputError, nearest
+from models.checks import InputError, InputErrors, nearest, printable, shown
 
 CAMPAIGN_FILE = "campaign.toml"
 _TABLES = ("title", "device", "columns", "units", "records", "rig", "system")
-_OPENERS: Mapping[str, Callable[[bytes, str], Source]] = {
-    ".csv": open_text,
-    ".tsv": open_text,
-    ".txt": open_text,
-    ".parquet": open_parquet,
-    ".mat": open_mat,
-    ".npz": open_npz,
-}
+_LONGEST_TITLE = 400
+_MOST_ERRORS = 20
 
 
 def read_campaign(path: str | Path) -> Campaign:
-    """Read a campaign folder with everything in SI.
+    """Read a campaign folder, or one file as a campaign of its own, with everything in SI.
 
     Parameters
     ----------
     path : str or Path
-        The folder, or its ``campaign.toml``.
+        The folder, or its ``campaign.toml``; or a file of records, whose columns and units are
+        guessed, with findings that say so.
 
     Returns
     -------
@@ -56,35 +59,69 @@ def read_campaign(path: str | Path) -> Campaign:
     """
     given = Path(path)
     folder = given.parent if given.name == CAMPAIGN_FILE and not given.is_dir() else given
+    if given.is_file() and given.suffix.lower() in OPENERS:
+        title = given.stem
+        draft = draft_campaign(given.parent, [given.name], title=title, answers=Answers({}, {}))
+        return _campaign(given.parent, draft.toml().encode(), str(path), _guesses(draft))
     if not folder.is_dir():
         raise InputError(
-            str(path), expected="a campaign folder", found="a file" if given.exists() else "nothing"
+            str(path),
+            expected="a campaign folder, or a file of records (" + ", ".join(OPENERS) + ")",
+            found=_kind(given, "a file of another kind"),
+        )
+    if not (folder / CAMPAIGN_FILE).exists():
+        raise InputError(
+            f"file {CAMPAIGN_FILE!r}",
+            expected="in the campaign folder",
+            found=f"nothing there; `inerter init {shlex.quote(str(folder))}` writes it",
+            where=str(folder),
         )
     content = _bytes_of(folder, CAMPAIGN_FILE, where=str(folder))
+    return _campaign(folder, content, str(path), [])
+
+
+def _guesses(draft: Draft) -> list[Finding]:
+    """Return what to tell of a file that no campaign describes."""
+    plain = not draft.columns and not draft.units
+    found = [] if plain else [Finding("note", t) for t in listed(draft.records[0].guess)]
+    for doubt in draft.doubts:
+        what = "column" if doubt.key == "columns" else "unit"
+        others = " or ".join(doubt.choices[1:])
+        text = (
+            f"the {what} of {doubt.quantity} is a guess, {shown(doubt.taken)}: {doubt.why}"
+            + (f"; it may be {printable(others)}" if others else "")
+            + "; `inerter init` with this file writes a campaign.toml to correct"
+        )
+        found.append(Finding("warning", text))
+    return found
+
+
+def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Finding]) -> Campaign:
+    """Return the campaign of a folder by the content of its ``campaign.toml``."""
     table = _parse(content)
     _check_keys(table)
     title = table.get("title", folder.resolve().name)
-    if not isinstance(title, str):
-        raise InputError("title", expected="text", found=repr(title), where=CAMPAIGN_FILE)
+    if not isinstance(title, str) or len(title) > _LONGEST_TITLE:
+        expected = f"text of at most {_LONGEST_TITLE} characters"
+        raise InputError("title", expected=expected, found=shown(title), where=CAMPAIGN_FILE)
     names = read_column_names(table.get("columns", {}))
     units = read_column_units(table.get("units", {}))
     device = read_device(table["device"]) if "device" in table else None
     rig = read_rig(table["rig"]) if "rig" in table else None
     system = read_system(table["system"]) if "system" in table else None
-    entries = read_entries(table.get("records"))
     digest = hashlib.sha256(_framed(CAMPAIGN_FILE, content))
-    records: list[Record] = []
-    findings: list[Finding] = []
+    where = f"{CAMPAIGN_FILE} [[records]]"
+    entries = list(expanded(read_entries(table.get("records")), folder, where=where))
+    read = _Reading(folder, names, units, digest)
     for entry in entries:
-        data = _bytes_of(folder, entry.file, where=f"{CAMPAIGN_FILE} [[records]]")
-        digest.update(_framed(entry.file, data))
-        record, found = read_record(_open(data, entry), entry, names=names, units=units)
-        records.append(record)
-        findings.extend(found)
-    _check_used(names, records)
+        read.take(entry)
+    read.finish(len(entries))
+    records, findings = read.records, [*findings, *read.findings]
+    _check_used(names, entries, records)
     if system is not None and not any(system.input in r.inputs for r in records):
         text = f"[system] takes {system.input} as its input, but no record has that column"
         findings.append(Finding("warning", text))
+    findings.extend(implausible(records, device, rig, assumed=read.assumed))
     return Campaign(
         title=title,
         records=tuple(records),
@@ -92,9 +129,80 @@ def read_campaign(path: str | Path) -> Campaign:
         rig=rig,
         system=system,
         content_hash=digest.hexdigest(),
-        source=str(path),
+        source=source,
         findings=_merged(findings, len(records)),
     )
+
+
+class _Reading:
+    """The records so far, and what was wrong with those that could not be read."""
+
+    def __init__(
+        self, folder: Path, names: Mapping[str, str], units: Mapping[str, str], digest: Any
+    ) -> None:
+        self.folder = folder
+        self.names = names
+        self.units = units
+        self.digest = digest
+        self.records: list[Record] = []
+        self.findings: list[Finding] = []
+        self.assumed: set[str] = set()
+        self.errors: list[InputError] = []
+        self.hashed: set[str] = set()
+        self.book: Book | None = None
+
+    def take(self, entry: Entry) -> None:
+        """Read an entry's records, or keep what is wrong with it."""
+        try:
+            book = self._opened(entry.file)
+            own = {**self.names, **entry.channel}
+            sources = chosen_sources(book, entry, own)
+        except InputError as error:
+            self.errors.append(error)
+            return
+        for source in sources:
+            part = source.part if entry.part is not None or len(sources) > 1 else ""
+            try:
+                found = read_record(source, entry, names=own, units=self.units, part=part)
+            except InputError as error:
+                self.errors.append(error)
+                continue
+            record, findings, assumed = found
+            if any(record.file == other.file for other in self.records):
+                twice = {"expected": "listed once", "found": "it again", "where": record.file}
+                self.errors.append(InputError("record", **twice))
+                continue
+            self.records.append(record)
+            self.findings.extend(findings)
+            self.assumed.update(assumed)
+
+    def finish(self, count: int) -> None:
+        """Raise what is wrong: alone as it is, else one line each."""
+        if not self.errors:
+            return
+        if len(self.errors) == 1:
+            raise self.errors[0]
+        told = self.errors[:_MOST_ERRORS]
+        more = len(self.errors) - len(told)
+        advice = (
+            f"{len(self.errors)} of {count} records can't be read"
+            + (f" ({more} more than are listed)" if more else "")
+            + f": mend them, or take their [[records]] out of {CAMPAIGN_FILE}"
+        )
+        raise InputErrors(told, advice=advice)
+
+    def _opened(self, file: str) -> Book:
+        """Return a file's book; the last one is kept, since records of one file come together."""
+        if self.book is not None and self.book.name == file:
+            return self.book
+        where = f"{CAMPAIGN_FILE} [[records]]"
+        hint = len(self.errors) < _MOST_ERRORS  # which costs a look at all names
+        data = _bytes_of(self.folder, file, where=where, hint=hint)
+        if file not in self.hashed:
+            self.hashed.add(file)
+            self.digest.update(_framed(file, data))
+        self.book = open_book(data, file, where=where)
+        return self.book
 
 
 def _parse(content: bytes) -> dict[str, Any]:
@@ -102,7 +210,7 @@ def _parse(content: bytes) -> dict[str, Any]:
         return tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         raise InputError(CAMPAIGN_FILE, expected="in UTF-8", found=error.reason) from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # of TOML, and of integers of 5,000 digits
         raise InputError(f"{CAMPAIGN_FILE} is not valid TOML", found=str(error)) from None
 
 
@@ -117,7 +225,7 @@ def _check_keys(table: Mapping[str, Any]) -> None:
             )
 
 
-def _bytes_of(folder: Path, name: str, *, where: str) -> bytes:
+def _bytes_of(folder: Path, name: str, *, where: str, hint: bool = True) -> bytes:
     """Return a file's bytes if it lies inside the campaign folder, symbolic links followed."""
     root = folder.resolve()
     try:
@@ -125,31 +233,33 @@ def _bytes_of(folder: Path, name: str, *, where: str) -> bytes:
         inside = target.is_relative_to(root) and not Path(name).is_absolute()
         if inside and target.is_file():
             return target.read_bytes()
-        found = "outside of it"
-        if inside:
-            found = "a folder" if target.is_dir() else "nothing there"
-            if not target.exists():
-                found += nearest(name, [p.name for p in root.iterdir()])
+        found = _kind(target) if inside else "outside of it"
+        if hint and inside and not target.exists():
+            found += nearest(name, _names(root))
     except OSError as error:
         found = error.strerror or "an unreadable file"
     except (ValueError, RuntimeError) as error:  # a zero byte in the name, a loop of links
         found = str(error)
     raise InputError(
-        f"file {name[:80]!r}", expected="in the campaign folder", found=found, where=where
+        f"file {shown(name)}", expected="in the campaign folder", found=found, where=where
     )
 
 
-def _open(data: bytes, entry: Entry) -> Source:
-    suffix = Path(entry.file).suffix.lower()
-    opener = _OPENERS.get(suffix)
-    if opener is None:
-        raise InputError(
-            f"file {entry.file!r}",
-            expected="one of " + ", ".join(_OPENERS),
-            found=suffix or "no suffix",
-            where=f"{CAMPAIGN_FILE} [[records]]",
-        )
-    return opener(data, entry.file)
+def _kind(target: Path, file: str = "a file") -> str:
+    """Return in words what lies at a path."""
+    if not target.exists():
+        return "nothing there"
+    if target.is_file():
+        return file
+    mode = target.stat().st_mode
+    kinds = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"))
+    return next((text for test, text in kinds if test(mode)), "a device")
+
+
+@lru_cache(maxsize=1)
+def _names(root: Path) -> tuple[str, ...]:
+    with os.scandir(root) as items:
+        return tuple(item.name for item in items)
 
 
 def _framed(name: str, data: bytes) -> bytes:
@@ -157,7 +267,9 @@ def _framed(name: str, data: bytes) -> bytes:
     return f"{name}\0{len(data)}\0".encode() + data
 
 
-def _check_used(names: Mapping[str, str], records: Iterable[Record]) -> None:
+def _check_used(
+    names: Mapping[str, str], entries: Sequence[Entry], records: Iterable[Record]
+) -> None:
     """Raise where ``[columns]`` names a header that no record has."""
     for quantity, header in names.items():
         if quantity in ("time", "force"):
@@ -166,7 +278,8 @@ def _check_used(names: Mapping[str, str], records: Iterable[Record]) -> None:
             quantity in r.inputs or getattr(r, quantity, None) is not None for r in records
         )
         rejected = quantity in ("velocity", "acceleration")
-        if not present and not rejected:
+        own = any(quantity in entry.channel for entry in entries)
+        if not present and not rejected and not own:
             raise InputError(
                 quantity,
                 expected=f"in a column {header!r} of at least one record",

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.readers.source import Source
-from discover.readers.units import SI_UNITS, check_unit, same_unit, to_si
+from discover.readers.units import LARGEST, SI_UNITS, check_unit, same_unit, to_si
 from models.checks import Array, InputError
 
 QUANTITIES = {
@@ -25,8 +25,7 @@ QUANTITIES = {
 }
 """The columns that a record may have, each with the kind of its unit."""
 
-_LARGEST = 1e30  # whose square, and the sum of squares, is still a number
-_HEADER = re.compile(r"\s*(.*?)\s*(?:\[([^\]]*)\]|\(([^():,]*)\))?\s*", re.DOTALL)
+_LONGEST_NAME = 80
 
 
 @dataclass(frozen=True)
@@ -41,30 +40,49 @@ class Columns:
     """Quantities whose unit is nowhere stated and taken as SI."""
     unused: Mapping[str, str]
     """Headers that are nearly a quantity's name but not read, with that name."""
+    step: float | None = None
+    """s, the sampling interval that the times were made of; None where they were read."""
 
 
-def _split(header: str) -> tuple[str, str | None]:
-    """Return a header's name and unit, as in ``force [kN]`` or ``force (kN)``."""
-    match = _HEADER.fullmatch(header)
-    if match is None or not match.group(1):
-        return header.strip(), None
-    unit = match.group(2) if match.group(2) is not None else match.group(3)
-    return match.group(1), unit.strip() if unit and unit.strip() else None
+def split_header(header: str) -> tuple[str, str | None]:
+    """Return a header's name and unit; None where it has none.
+
+    Examples
+    --------
+    >>> split_header("force [kN]"), split_header("force (kN)"), split_header("data(:,1)")
+    (('force', 'kN'), ('force', 'kN'), ('data(:,1)', None))
+    """
+    text = header.strip()
+    for opening, closing, barred in (("[", "]", "[]"), ("(", ")", "():,")):
+        if not text.endswith(closing):
+            continue
+        name, bracket, unit = text[:-1].rpartition(opening)
+        if bracket and name.strip() and not any(c in unit for c in barred):
+            return name.strip(), unit.strip() or None
+    return text, None
 
 
 def _plain(name: str) -> str:
     return re.sub(r"[\s\-]+", "_", name.strip().lower())
 
 
-def _find(source: Source, quantity: str, wanted: str) -> int | None:
-    """Return the index of the header that is meant; None where there is none."""
-    if wanted in source.headers:
-        return source.headers.index(wanted)
-    names = [_plain(_split(h)[0]) for h in source.headers]
-    target = _plain(_split(wanted)[0])
-    found = [i for i, name in enumerate(names) if name == target]
-    if not found:  # a field of a MATLAB structure
-        found = [i for i, name in enumerate(names) if name.rsplit(".", 1)[-1] == target]
+def find_column(source: Source, quantity: str, wanted: str) -> int | None:
+    """Return the index of the header that is meant; None where there is none.
+
+    Raises
+    ------
+    InputError
+        Where several could be meant.
+    """
+    found = [i for i, header in enumerate(source.headers) if header == wanted]
+    target = _plain(split_header(wanted)[0])
+    names = [_plain(split_header(h)[0]) for h in source.headers]
+    if not found:
+        found = [i for i, name in enumerate(names) if name == target]
+    if not found:  # a vector in a group or a structure
+        found = [i for i, name in enumerate(names) if name.endswith((f".{target}", f"/{target}"))]
+    if not found and wanted == quantity and quantity in source.roles:
+        found = [source.roles[quantity]]
     if len(found) > 1:
         listed = ", ".join(repr(source.headers[i]) for i in found)
         raise InputError(quantity, expected="one column", found=listed, where=source.name)
@@ -72,7 +90,12 @@ def _find(source: Source, quantity: str, wanted: str) -> int | None:
 
 
 def read_columns(
-    source: Source, *, names: Mapping[str, str], units: Mapping[str, str], may_lack: Iterable[str]
+    source: Source,
+    *,
+    names: Mapping[str, str],
+    units: Mapping[str, str],
+    may_lack: Iterable[str],
+    step: float | None = None,
 ) -> Columns:
     """Read the columns of a record and convert them to SI.
 
@@ -86,6 +109,8 @@ def read_columns(
         ``[units]``: units by quantity where headers carry none.
     may_lack : iterable of str
         Quantities that this record can do without.
+    step : float, optional
+        s, a sampling interval to take in place of a time column.
 
     Raises
     ------
@@ -95,9 +120,13 @@ def read_columns(
     found: dict[str, int] = {}
     for quantity in QUANTITIES:
         wanted = names.get(quantity, quantity)
-        index = _find(source, quantity, wanted)
+        index = find_column(source, quantity, wanted)
+        if quantity == "time" and step is not None:
+            continue  # asked for in place of the column
         if index is not None:
             found[quantity] = index
+        elif quantity == "time" and source.step is not None:
+            continue
         elif quantity not in may_lack:
             raise missing_column(source, quantity, wanted)
     chosen = {}
@@ -113,25 +142,41 @@ def read_columns(
             values[quantity] = column
         else:
             values[quantity] = to_si(column, unit, QUANTITIES[quantity])
+    made = None
+    if "time" in found:
+        raw_time = raw[list(found).index("time")]
+    else:
+        made = step if step is not None else source.step or 1.0
+        count = np.arange(values["force"].size, dtype=np.float64)
+        raw_time = made * count + (source.start if step is None else 0.0)
+        values["time"] = raw_time
+    return Columns(values, raw_time, tuple(assumed), _unused(source, found), made)
+
+
+def _unused(source: Source, found: Mapping[str, int]) -> dict[str, str]:
+    """Return headers that are not read but nearly a quantity's name, with that name."""
     unused = {}
     for index, header in enumerate(source.headers):
-        if index in found.values():
+        if index in found.values() or len(header) > _LONGEST_NAME:
             continue
-        near = difflib.get_close_matches(_plain(_split(header)[0]), list(QUANTITIES), 1, 0.8)
+        near = difflib.get_close_matches(_plain(split_header(header)[0]), list(QUANTITIES), 1, 0.8)
         if near and near[0] not in found:
             unused[header] = near[0]
-    return Columns(values, raw[list(found).index("time")], tuple(assumed), unused)
+    return unused
 
 
 def missing_column(source: Source, quantity: str, wanted: str, *, instead: str = "") -> InputError:
     """Return the error that says which column is missing and what is there instead."""
-    by_name = {_plain(_split(h)[0]): h for h in source.headers}
-    close = difflib.get_close_matches(_plain(wanted), list(by_name), n=1, cutoff=0.6)
+    by_name = {_plain(split_header(h)[0]): h for h in source.headers}
+    short = [name for name in by_name if len(name) <= _LONGEST_NAME]
+    close = difflib.get_close_matches(_plain(wanted)[:_LONGEST_NAME], short, n=1, cutoff=0.6)
     hint = f"; is it {by_name[close[0]]!r}? [columns] can say so" if close else ""
+    if source.headers[0] == "column 1":
+        hint = f'; there is no header: say in [columns] which is which, {quantity} = "column 1"'
     return InputError(
         f"column {wanted!r}" + (f" for {quantity}" if wanted != quantity else ""),
         expected="among the headers" + instead,
-        found=", ".join(source.headers)[:200] + hint,
+        found=", ".join(h[:_LONGEST_NAME] for h in source.headers[:99])[:200] + hint,
         where=source.name,
     )
 
@@ -140,7 +185,7 @@ def _unit_of(source: Source, index: int, quantity: str, stated: str | None) -> s
     """Return a column's unit, checked; None where neither header nor ``[units]`` has it."""
     kind = QUANTITIES[quantity]
     header = source.headers[index]
-    own = _split(header)[1]
+    own = split_header(header)[1] or source.units.get(index)
     if own is None:
         return stated
     check_unit(own, kind, name=quantity, where=f"{source.name}, header {header!r}")
@@ -155,7 +200,7 @@ def _unit_of(source: Source, index: int, quantity: str, stated: str | None) -> s
 
 
 def _check_finite(source: Source, index: int, column: Array) -> None:
-    bad = np.flatnonzero(~(np.abs(column) < _LARGEST))
+    bad = np.flatnonzero(~(np.abs(column) < LARGEST))
     if bad.size:
         more = f" ({bad.size} such values)" if bad.size > 1 else ""
         raise InputError(

@@ -3,39 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
-from discover.readers.columns import QUANTITIES, assumed_units, missing_column, read_columns
+from discover.readers.clipping import clipped_motion_text, clipping_text
+from discover.readers.columns import (
+    QUANTITIES,
+    Columns,
+    assumed_units,
+    missing_column,
+    read_columns,
+)
 from discover.readers.consistency import derivative_agreement
+from discover.readers.entries import Entry
 from discover.readers.labels import check_labels
-from discover.readers.sampling import jitter_text, regular
+from discover.readers.sampling import regular, resampling_text
 from discover.readers.source import Source
+from discover.readers.units import SMALLEST
 from discover.record_kind import classify
 from discover.records import Finding, Record
-from models.checks import Array, InputError
+from models.checks import InputError, shown
 
+_FEW = 50  # samples, below which a warning says so
 _MAY_LACK = tuple(name for name in QUANTITIES if name not in ("time", "force"))
 
 
-@dataclass(frozen=True)
-class Entry:
-    """One table of ``[[records]]``."""
-
-    file: str
-    """Path inside the campaign folder, as written."""
-    frequency: float | None
-    """Hz, as labelled."""
-    amplitude: float | None
-    """m, as labelled."""
-    held_out: bool
-    """Never fitted, only predicted."""
-
-
 def read_record(
-    source: Source, entry: Entry, *, names: Mapping[str, str], units: Mapping[str, str]
-) -> tuple[Record, list[Finding]]:
+    source: Source,
+    entry: Entry,
+    *,
+    names: Mapping[str, str],
+    units: Mapping[str, str],
+    part: str = "",
+) -> tuple[Record, list[Finding], tuple[str, ...]]:
     """Read one record, judge it, and say what had to be mended.
 
     Parameters
@@ -45,19 +46,30 @@ def read_record(
     entry : Entry
         What ``campaign.toml`` says of it.
     names, units : mapping
-        ``[columns]`` and ``[units]``.
+        ``[columns]``, with the entry's own channels, and ``[units]``.
+    part : str
+        The sheet, group or table, where the file has several.
 
     Returns
     -------
     Record
     list of Finding
+    tuple of str
+        Quantities whose unit is nowhere stated.
 
     Raises
     ------
     InputError
         On anything that leaves no usable record.
     """
-    columns = read_columns(source, names=names, units=units, may_lack=_MAY_LACK)
+    file = entry.label(part)
+    columns = read_columns(
+        source,
+        names=names,
+        units=units,
+        may_lack=_MAY_LACK,
+        step=entry.step,
+    )
     if "displacement" not in columns.values and None in (entry.frequency, entry.amplitude):
         raise missing_column(
             source,
@@ -65,17 +77,21 @@ def read_record(
             names.get("displacement", "displacement"),
             instead=", or the record's frequency and amplitude given",
         )
+    columns = _within(columns, entry, file)
     findings = [
         Finding(
             "warning",
-            f"column {header!r} is not read: it is nearly {quantity!r}; rename it, or name it in "
-            "[columns]",
-            entry.file,
+            f"column {shown(header)} is not read: it is nearly {quantity!r}; rename it, or name it"
+            " in [columns]",
+            file,
         )
         for header, quantity in columns.unused.items()
     ]
+    if columns.step is not None:
+        text = f"it has no time column: the times are made of its {1.0 / columns.step:.6g} Hz"
+        findings.append(Finding("note", text, file))
     if columns.assumed:
-        findings.append(Finding("warning", assumed_units(columns.assumed), entry.file))
+        findings.append(Finding("warning", assumed_units(columns.assumed), file))
     values = dict(columns.values)
     has_motion = "displacement" in values
     time, measured = values.pop("time"), values
@@ -84,17 +100,20 @@ def read_record(
         values,
         raw_time=columns.raw_time,
         resample=has_motion,
-        where=entry.file,
+        where=file,
         place=source.place,
     )
     for name in ("displacement", "force"):
-        if name in values and not np.ptp(values[name]) > 0.0:
+        if name in values and not np.ptp(values[name]) > SMALLEST:
             found = f"{values[name][0]:.6g} throughout"
-            raise InputError(name, expected="varying", found=found, where=entry.file)
+            raise InputError(name, expected="varying", found=found, where=file)
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
-    clipped = clipping_text(values["force"])
-    if clipped:
-        findings.append(Finding("warning", clipped, entry.file))
+    odd = [clipping_text(values["force"])]
+    if has_motion:
+        odd.append(clipped_motion_text(values["displacement"]))
+        if values["force"].size < _FEW:
+            odd.append(f"only {values['force'].size} samples: too few to tell a law from noise")
+    findings += [Finding("warning", text, file) for text in odd if text]
     values = dict(sampled.columns)
     for order, name in enumerate(("velocity", "acceleration"), start=1):
         if name not in values:
@@ -109,9 +128,9 @@ def read_record(
                 f"the measured {name} disagrees with the displacement: {agreement.reason}; "
                 "it is not used"
             )
-            findings.append(Finding("warning", text, entry.file))
+            findings.append(Finding("warning", text, file))
     record = Record(
-        file=entry.file,
+        file=file,
         time=sampled.time,
         force=values["force"],
         displacement=values.get("displacement"),
@@ -124,49 +143,31 @@ def read_record(
         held_out=entry.held_out,
         uniform=sampled.uniform,
     )
-    if sampled.jitter:
+    if sampled.uneven:
         resampled = classify(record).kind != "sine"
-        level, text = jitter_text(sampled.jitter, step, resampled=resampled)
-        findings.append(Finding(level, text, entry.file))
+        level, text = resampling_text(sampled, resampled=resampled)
+        findings.append(Finding(level, text, file))
         if not resampled:
             record = record.sampled(time, measured)
     findings.extend(check_labels(record))
-    return record, findings
+    return record, findings, columns.assumed
 
 
-def clipping_text(force: Array) -> str:
-    """Return what to tell about a force that stays at its extreme value, else an empty string.
-
-    A smooth extreme passes through neighbouring values too, even when quantised; a clipped one
-    piles its samples up on exactly one value.
-
-    Examples
-    --------
-    >>> x = np.sin(np.arange(2000) / 50.0)
-    >>> clipping_text(x), clipping_text(np.clip(x, -0.9, 0.9)) != ""
-    ('', True)
-    """
-    parts = []
-    for sign, name in ((1.0, "largest"), (-1.0, "smallest")):
-        signed = sign * force
-        top = float(signed.max())
-        at_top = signed == top
-        count = int(np.count_nonzero(at_top))
-        edges = np.flatnonzero(np.diff(np.r_[0, at_top.astype(np.int8), 0]))
-        longest = int((edges[1::2] - edges[::2]).max())
-        if longest < 4 or count < 8:
-            continue
-        below = signed[~at_top]
-        if below.size == 0:
-            continue
-        second = float(below.max())
-        # A quantised smooth peak has 2.4 times as many samples at its top value as at the next.
-        if count > 6 * int(np.count_nonzero(below == second)):
-            share = 100.0 * count / force.size
-            parts.append(f"{name} value {sign * top:.6g} N for {count} samples ({share:.2g} %)")
-    if not parts:
-        return ""
-    return (
-        "the force stays at its " + " and its ".join(parts) + ": the channel looks clipped; "
-        "raise its range and measure again, or leave the record out"
-    )
+def _within(columns: Columns, entry: Entry, file: str) -> Columns:
+    """Return the columns over the span of time that the entry asks for."""
+    first, last = entry.span
+    if first is None and last is None:
+        return columns
+    time = columns.values["time"]
+    inside = np.ones(time.size, dtype=bool)
+    if first is not None:
+        inside &= time >= first
+    if last is not None:
+        inside &= time <= last
+    if not inside.any():
+        raise InputError(
+            "range", expected=f"inside the record, {time.min():.6g} to {time.max():.6g} s",
+            found=entry.span_text, where=file,
+        )  # fmt: skip
+    values = {name: column[inside] for name, column in columns.values.items()}
+    return replace(columns, values=values, raw_time=columns.raw_time[inside])

@@ -1,4 +1,4 @@
-"""Time as measured: rounding told from jitter, jitter resampled, gaps refused."""
+"""Time as measured: rounding told from jitter, uneven steps resampled, lost motion refused."""
 
 from __future__ import annotations
 
@@ -6,14 +6,23 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d
 
+from discover.readers.fastest_motion import fastest_motion
 from discover.records import EVEN, GAP, on_grid
-from models.checks import Array, InputError
+from models.checks import Array, InputError, number
 
 FEWEST_SAMPLES = 16
 """A record of fewer samples is an error."""
+LONGEST_GAP = 0.25
+"""Of a cycle of the fastest motion: a spline bridges it with an error of 1.6 % of a sine."""
 
 _STRONG = 0.2  # of the step, root mean square: above it resampling costs accuracy
+_ENOUGH = 20.0  # samples a cycle of the fastest motion, beyond which a grid needs none
+_NEIGHBOURS = 51  # steps whose median is the usual step there
+_ANOTHER = 1.8  # times, from which the usual step has changed: jitter moves its median by less
+_AT_REST = 0.02  # of the stroke: what moves less over two steps before and after is at rest
+_STEPS = (1e-12, 1e9)  # s: beyond them a square is no number
 
 
 @dataclass(frozen=True)
@@ -26,8 +35,21 @@ class Sampled:
     """(N,) by name."""
     uniform: bool
     """Whether the steps are equal."""
-    jitter: float
+    jitter: float = 0.0
     """Root mean square deviation from the grid over the step, where resampled; else 0."""
+    changes: tuple[float, float] | None = None
+    """Smallest and largest usual step, s, where the sampling changed in the record."""
+    gaps: int = 0
+    """Gaps that were bridged."""
+    longest_gap: float = 0.0
+    """s, of the bridged ones."""
+    fastest: float | None = None
+    """Hz, the fastest motion, where gaps or a change of step were held to it."""
+
+    @property
+    def uneven(self) -> bool:
+        """Return whether steps that were not equal have been made so."""
+        return bool(self.jitter or self.changes or self.gaps)
 
 
 def regular(
@@ -42,8 +64,9 @@ def regular(
     """Return the columns on uniform time, or on time as it is where that is allowed.
 
     Time that deviates from a uniform grid by no more than its last printed digit (or single
-    precision) was uniform and is put back on the grid; other jitter is removed by a cubic spline
-    through the samples.
+    precision) was uniform and is put back on the grid; other steps are made equal by a cubic
+    spline through the samples. A step that is longer than a quarter of a cycle of the fastest
+    motion has lost it.
 
     Parameters
     ----------
@@ -54,7 +77,7 @@ def regular(
     raw_time : ndarray, shape (N,)
         In the file's own unit.
     resample : bool
-        Resample jitter and refuse gaps; without it non-uniform time stays.
+        Resample, by ``columns["displacement"]``; without it non-uniform time stays.
     where : str
         Record, for messages.
     place : callable
@@ -63,7 +86,7 @@ def regular(
     Raises
     ------
     InputError
-        On too few samples, time that does not increase, or gaps.
+        On too few samples, time that does not increase, or gaps that lose the motion.
     """
     size = time.size
     if size < FEWEST_SAMPLES:
@@ -73,39 +96,94 @@ def regular(
     index = np.arange(size, dtype=np.float64)
     centred = index - index.mean()
     step = float(centred @ (time - time.mean()) / (centred @ centred))
-    grid = time.mean() + step * centred
-    deviation = np.abs(time - grid)
-    scale = step / _raw_step(raw_time, centred)
-    if step > 0.0 and deviation.max() <= max(_rounding(raw_time) * scale, EVEN * step):
-        uniform = _anchored(time, step)
-        return Sampled(uniform, columns, uniform=True, jitter=0.0)
+    if step > 0.0:
+        number("sampling interval", step, at_least=_STEPS[0], at_most=_STEPS[1], where=where)
+        grid = time.mean() + step * centred
+        scale = step / _raw_step(raw_time, centred)
+        allowed = max(_rounding(raw_time) * scale, EVEN * step)
+        if np.abs(time - grid).max() <= allowed:
+            return Sampled(_anchored(time, step), columns, uniform=True)
     _check_increasing(time, where, place)
     if not resample:
-        return Sampled(time, columns, uniform=False, jitter=0.0)
-    _check_gaps(time, where, place)
-    even = np.linspace(time[0], time[-1], size)
-    resampled = on_grid(time, columns, even)
-    jitter = float(np.sqrt(np.mean((time - even) ** 2)) / step)
-    return Sampled(even, resampled, uniform=True, jitter=jitter)
+        return Sampled(time, columns, uniform=False)
+    return _resampled(time, columns, step, where=where, place=place)
 
 
-def jitter_text(jitter: float, step: float, *, resampled: bool) -> tuple[str, str]:
-    """Return the level and the text of what to tell about a record whose times jitter.
+def _resampled(
+    time: Array,
+    columns: Mapping[str, Array],
+    step: float,
+    *,
+    where: str,
+    place: Callable[[int], str],
+) -> Sampled:
+    """Return the columns on a grid, or raise where the motion between samples is lost."""
+    steps = np.diff(time)
+    usual = median_filter(steps, size=min(_NEIGHBOURS, steps.size), mode="nearest")
+    low, high = float(usual.min()), float(usual.max())
+    changes = (low, high) if high > _ANOTHER * low else None
+    gap = steps > GAP * (np.median(steps) if changes is None else usual)
+    if changes is None and not gap.any():
+        even = np.linspace(time[0], time[-1], time.size)
+        jitter = float(np.sqrt(np.mean((time - even) ** 2)) / step)
+        return Sampled(even, on_grid(time, columns, even), uniform=True, jitter=jitter)
+    fastest = fastest_motion(time, columns["displacement"])
+    _check_gaps(time, columns["displacement"], fastest, where, place)
+    # The coarsest steps that lose nothing: finer ones would only repeat what was measured.
+    chosen = float(np.clip(1.0 / (_ENOUGH * fastest), low, high))
+    count = max(round(float(time[-1] - time[0]) / chosen) + 1, FEWEST_SAMPLES)
+    even = np.linspace(time[0], time[-1], count)
+    return Sampled(
+        even,
+        on_grid(time, columns, even),
+        uniform=True,
+        changes=changes,
+        gaps=int(np.count_nonzero(gap)),
+        longest_gap=float(steps[gap].max()) if gap.any() else 0.0,
+        fastest=fastest,
+    )
+
+
+def resampling_text(sampled: Sampled, *, resampled: bool) -> tuple[str, str]:
+    """Return the level and the text of what to tell about steps that were not equal.
+
+    Parameters
+    ----------
+    sampled : Sampled
+        From `regular`, uneven.
+    resampled : bool
+        Whether its grid is used: a sine test is fitted at the times as measured.
 
     Examples
     --------
-    >>> jitter_text(0.05, 0.001, resampled=True)[0]
+    >>> t = np.arange(4.0)
+    >>> resampling_text(Sampled(t, {}, uniform=True, jitter=0.05), resampled=True)[0]
     'note'
     """
-    text = (
-        f"the time steps are not equal ({100.0 * jitter:.2g} % of {step:.4g} s, root mean square):"
-    )
+    step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
+    level, parts = "note", []
+    if sampled.jitter:
+        share = f"{100.0 * sampled.jitter:.2g} % of {step:.4g} s, root mean square"
+        parts.append(f"the time steps are not equal ({share})")
+    if sampled.changes:
+        low, high = sampled.changes
+        parts.append(f"the sampling changes within the record, from {low:.4g} to {high:.4g} s")
+    if sampled.gaps and sampled.fastest:
+        many = f"{sampled.gaps} gaps, the longest of" if sampled.gaps > 1 else "a gap of"
+        parts.append(
+            f"{many} {sampled.longest_gap:.4g} s, short beside its fastest motion"
+            f" ({sampled.fastest:.3g} Hz)"
+        )
+    text = "; ".join(parts)
     if not resampled:
-        return "note", text + " the sine test is fitted at the times as measured"
-    text += " resampled onto a uniform grid by a cubic spline"
-    if jitter > _STRONG:
-        return "warning", text + "; so much jitter costs accuracy at high frequency"
-    return "note", text
+        return "note", text + ": the sine test is fitted at the times as measured"
+    text += ": resampled onto a uniform grid by a cubic spline"
+    if sampled.changes or sampled.gaps:
+        text += f", every {step:.4g} s"
+    if sampled.jitter > _STRONG:
+        level = "warning"
+        text += "; so much jitter costs accuracy at high frequency"
+    return level, text
 
 
 def _raw_step(raw_time: Array, centred: Array) -> float:
@@ -157,16 +235,23 @@ def _check_increasing(time: Array, where: str, place: Callable[[int], str]) -> N
         )
 
 
-def _check_gaps(time: Array, where: str, place: Callable[[int], str]) -> None:
+def _check_gaps(
+    time: Array, displacement: Array, fastest: float, where: str, place: Callable[[int], str]
+) -> None:
     steps = np.diff(time)
-    typical = float(np.median(steps))
-    bad = np.flatnonzero(steps > GAP * typical)
+    longest = LONGEST_GAP / fastest
+    # A logger may save little while nothing moves: there it loses nothing.
+    near = maximum_filter1d(displacement, 5) - minimum_filter1d(displacement, 5)
+    moving = np.maximum(near[1:], near[:-1]) > _AT_REST * np.ptp(displacement)
+    bad = np.flatnonzero((steps > longest) & moving)
     if bad.size:
         row = int(bad[0]) + 1
         more = f" ({bad.size} such gaps)" if bad.size > 1 else ""
         raise InputError(
             "time",
-            expected=f"without gaps, sampled every {typical:.6g} s",
-            found=f"{steps[row - 1]:.6g} s from {time[row - 1]:.9g} s on{more}",
+            expected=f"without gaps of more than {longest:.4g} s, a quarter of a cycle of its"
+            f" fastest motion ({fastest:.3g} Hz)",
+            found=f"{steps[row - 1]:.6g} s from {time[row - 1]:.9g} s on{more}; cut the record"
+            " there, or measure again",
             where=f"{where} {place(row)}",
         )

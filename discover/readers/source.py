@@ -1,27 +1,16 @@
-"""A record's file, opened: its headers, and columns by header."""
+"""A record's file, opened: the tables that it holds, and their columns by header."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from models.checks import Array, InputError
 
-
-@dataclass(frozen=True)
-class Source:
-    """A table whose columns are read when they are asked for."""
-
-    name: str
-    """File as in ``campaign.toml``."""
-    headers: tuple[str, ...]
-    """As in the file, stripped."""
-    read: Callable[[Sequence[int]], list[Array]]
-    """Columns by their index among the headers, each (N,) float64, NaN where empty."""
-    place: Callable[[int], str]
-    """Where a row is, in words: "line 12" of a text file, "row 11" of others."""
+MOST_VALUES = 2**27
+"""Of one file: more than memory holds is damage or ill will."""
 
 
 def row_place(row: int) -> str:
@@ -35,38 +24,58 @@ def row_place(row: int) -> str:
     return f"row {row + 1}"
 
 
-def from_arrays(name: str, arrays: dict[str, object]) -> Source:
-    """Return a source over named arrays, as files of MATLAB and numpy hold them.
+@dataclass(frozen=True)
+class Source:
+    """A table whose columns are read when they are asked for."""
 
-    Parameters
-    ----------
-    name : str
-        File, for messages.
-    arrays : dict
-        Values by name. Vectors count as columns; a matrix of at most 64 columns gives one
-        column each, named as MATLAB would: ``data(:,1)``. Anything else is left out.
+    name: str
+    """File as in ``campaign.toml``, with the part where it is one of several."""
+    headers: tuple[str, ...]
+    """As in the file, stripped."""
+    read: Callable[[Sequence[int]], list[Array]]
+    """Columns by their index among the headers, each (N,) float64, NaN where empty."""
+    place: Callable[[int], str] = row_place
+    """Where a row is, in words: "line 12" of a text file, "row 11" of others."""
+    part: str = ""
+    """Name of the sheet, group or table inside the file; "" for the whole file."""
+    units: Mapping[int, str] = field(default_factory=dict)
+    """Units by header that the file states elsewhere than in the header."""
+    roles: Mapping[str, int] = field(default_factory=dict)
+    """Headers by quantity where the format itself tells what they are, as a waveform's time."""
+    step: float | None = None
+    """s, the sampling interval that the file states; None where it states none."""
+    start: float = 0.0
+    """s, the time of the first sample that goes with `step`."""
 
-    Returns
-    -------
-    Source
-    """
-    columns: dict[str, np.ndarray] = {}
-    for key, value in arrays.items():
-        array = np.asarray(value)
-        if array.dtype.kind not in "iufb" or array.size < 2:
-            continue
-        vector = array.squeeze()
-        if vector.ndim == 1:
-            columns[key.strip()] = vector
-        elif vector.ndim == 2 and vector.shape[1] <= 64:
-            for index in range(vector.shape[1]):
-                columns[f"{key}(:,{index + 1})"] = vector[:, index]
-    if not columns:
-        raise InputError("content", expected="numeric vectors", found="none", where=name)
-    headers = tuple(columns)
+
+@dataclass(frozen=True)
+class Book:
+    """A file's tables."""
+
+    name: str
+    """File as in ``campaign.toml``."""
+    parts: tuple[Source, ...]
+    """At least one, in the file's order."""
+    key: str = "group"
+    """What `[[records]]` calls a part: "sheet" of a workbook, else "group"."""
+    whole: Source | None = None
+    """All columns of a file whose groups are parts of one tree; None where tables are apart."""
+    cells: Callable[[str, str], Source] | None = None
+    """The table in a part's range of cells, of a workbook."""
+
+
+def single(source: Source) -> Book:
+    """Return the book of a file that holds one table."""
+    return Book(source.name, (source,))
+
+
+def column_reader(
+    name: str, headers: Sequence[str], columns: Sequence[Array]
+) -> Callable[[Sequence[int]], list[Array]]:
+    """Return what reads columns that are in memory, and refuses those of unequal lengths."""
 
     def read(indices: Sequence[int]) -> list[Array]:
-        result = [np.array(columns[headers[i]], dtype=np.float64) for i in indices]
+        result = [np.array(columns[i], dtype=np.float64) for i in indices]
         for index, column in zip(indices, result, strict=True):
             if column.size != result[0].size:
                 raise InputError(
@@ -77,4 +86,4 @@ def from_arrays(name: str, arrays: dict[str, object]) -> Source:
                 )
         return result
 
-    return Source(name, headers, read, row_place)
+    return read

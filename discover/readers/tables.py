@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from discover.readers.columns import QUANTITIES
-from discover.readers.record import Entry
+from discover.readers.entries import Entry
+from discover.readers.excel import cell_range
 from discover.readers.units import check_unit, quantity
 from discover.records import CarriedSystem, RigLimits
-from models.checks import InputError, nearest, number, one_of
+from models.checks import InputError, nearest, number, one_of, shown
 from models.device import Device
 
 _FILE = "campaign.toml"
@@ -31,13 +34,17 @@ _RIG = {
     "max_acceleration": "acceleration",
     "max_force": "force",
 }
+_RECORD = (
+    "file", "frequency", "amplitude", "held_out", "sheet", "group", "channel", "range",
+    "sampling_rate",
+)  # fmt: skip
 _SYSTEM = {"mass": "mass", "stiffness": "stiffness"}
 
 
 def _table(value: object, keys: Iterable[str], *, where: str) -> Mapping[str, Any]:
     """Return a table whose keys are all known, or raise `InputError` with the near name."""
     if not isinstance(value, Mapping):
-        raise InputError(where, expected="a table", found=repr(value)[:60], where=_FILE)
+        raise InputError(where, expected="a table", found=shown(value), where=_FILE)
     listed = tuple(keys)
     for key in value:
         if key not in listed:
@@ -56,7 +63,7 @@ def read_column_names(value: object) -> dict[str, str]:
     for key, header in table.items():
         if not isinstance(header, str) or not header.strip():
             raise InputError(
-                key, expected="a header's text", found=repr(header), where=f"{_FILE} [columns]"
+                key, expected="a header's text", found=shown(header), where=f"{_FILE} [columns]"
             )
     return dict(table)
 
@@ -84,7 +91,7 @@ def read_device(value: object) -> Device:
     for key in ("preset", "name"):
         if key in table:
             if not isinstance(table[key], str):
-                raise InputError(key, expected="text", found=repr(table[key]), where=where)
+                raise InputError(key, expected="text", found=shown(table[key]), where=where)
             plain[key] = table[key]
     for key, kind in _DEVICE.items():
         if key in table:
@@ -108,7 +115,7 @@ def read_device(value: object) -> Device:
 
 def _plain_number(value: object) -> object:
     """Return a number as it is, and anything that only converts to one as text to be refused."""
-    return value if isinstance(value, int | float) and not isinstance(value, bool) else repr(value)
+    return value if isinstance(value, int | float) and not isinstance(value, bool) else shown(value)
 
 
 def read_rig(value: object) -> RigLimits:
@@ -137,13 +144,13 @@ def read_system(value: object) -> CarriedSystem:
     choices = ("base_acceleration", "applied_force")
     if not isinstance(driven, str):
         raise InputError(
-            "input", expected="one of " + ", ".join(choices), found=repr(driven), where=where
+            "input", expected="one of " + ", ".join(choices), found=shown(driven), where=where
         )
     return CarriedSystem(input=one_of("input", driven, choices, where=where), **found)
 
 
 def read_entries(value: object) -> list[Entry]:
-    """Return ``[[records]]``: at least one, each file once."""
+    """Return ``[[records]]``: at least one, each once."""
     if not isinstance(value, list) or not value:
         raise InputError(
             "[[records]]",
@@ -152,24 +159,106 @@ def read_entries(value: object) -> list[Entry]:
             where=_FILE,
         )
     entries: list[Entry] = []
+    met: set[str] = set()
     for index, item in enumerate(value, start=1):
         where = f"[[records]] {index}"
-        table = _table(item, ("file", "frequency", "amplitude", "held_out"), where=where)
-        file = table.get("file")
-        place = f"{_FILE} {where}"
-        if not isinstance(file, str) or not file.strip():
-            raise InputError("file", expected="a file's name", found=repr(file), where=place)
-        if any(entry.file == file for entry in entries):
-            raise InputError("file", expected="listed once", found=f"{file!r} again", where=place)
-        held_out = table.get("held_out", False)
-        if not isinstance(held_out, bool):
+        entry = _entry(_table(item, _RECORD, where=where), f"{_FILE} {where}")
+        same = replace(entry, channel_told=True).label(str(entry.part or ""))
+        if same in met:
             raise InputError(
-                "held_out", expected="true or false", found=repr(held_out), where=place
+                "file", expected="listed once", found=f"{shown(same)} again",
+                where=f"{_FILE} {where}",
+            )  # fmt: skip
+        met.add(same)
+        entries.append(entry)
+    samples = Counter(_samples(entry) for entry in entries)
+    return [replace(e, channel_told=samples[_samples(e)] > 1) for e in entries]
+
+
+def _samples(entry: Entry) -> tuple[str, str]:
+    """Return what tells apart entries but for their channels."""
+    return entry.file, replace(entry, channel_told=False).label(str(entry.part or ""))
+
+
+def _entry(table: Mapping[str, Any], place: str) -> Entry:
+    file = table.get("file")
+    if not isinstance(file, str) or not file.strip():
+        raise InputError("file", expected="a file's name", found=shown(file), where=place)
+    held_out = table.get("held_out", False)
+    if not isinstance(held_out, bool):
+        raise InputError("held_out", expected="true or false", found=shown(held_out), where=place)
+    labels: dict[str, float | None] = {"frequency": None, "amplitude": None, "sampling_rate": None}
+    for key, kind in (
+        ("frequency", "frequency"), ("amplitude", "length"), ("sampling_rate", "frequency")
+    ):  # fmt: skip
+        if key in table:
+            si = quantity(table[key], kind, name=key, where=place)
+            labels[key] = number(key, si, above=0.0, where=place)
+    rate = labels["sampling_rate"]
+    key, part = _part(table, place)
+    cells, span = _range(table.get("range", ""), place)
+    return Entry(
+        file,
+        labels["frequency"],
+        labels["amplitude"],
+        held_out,
+        key=key,
+        part=part,
+        channel=_channel(table.get("channel", {}), place),
+        cells=cells,
+        span=span,
+        span_text="" if cells else " ".join(str(table.get("range", "")).split()),
+        step=None if rate is None else 1.0 / rate,
+    )
+
+
+def _part(table: Mapping[str, Any], place: str) -> tuple[str, str | int | None]:
+    """Return what the part is called, and its name or number."""
+    if "sheet" in table and "group" in table:
+        raise InputError("sheet", expected="given without group", found="both", where=place)
+    for key in ("sheet", "group"):
+        value = table.get(key)
+        if value is None:
+            continue
+        named = isinstance(value, str) and value.strip()
+        numbered = isinstance(value, int) and not isinstance(value, bool)
+        if not (named or numbered):
+            raise InputError(
+                key, expected="a name, or a number from 1", found=shown(value), where=place
             )
-        labels: dict[str, float | None] = {"frequency": None, "amplitude": None}
-        for key, kind in (("frequency", "frequency"), ("amplitude", "length")):
-            if key in table:
-                si = quantity(table[key], kind, name=key, where=place)
-                labels[key] = number(key, si, above=0.0, where=place)
-        entries.append(Entry(file, labels["frequency"], labels["amplitude"], held_out))
-    return entries
+        return key, value
+    return "group", None
+
+
+def _channel(value: object, place: str) -> dict[str, str]:
+    """Return this record's own headers: of the force alone, or of any column."""
+    own = {"force": value} if isinstance(value, str) else value
+    table = _table(own, QUANTITIES, where=f"{place.removeprefix(_FILE).strip()} channel")
+    for key, header in table.items():
+        if not isinstance(header, str) or not header.strip():
+            raise InputError(
+                f"channel.{key}", expected="a header's text", found=shown(header), where=place
+            )
+    return dict(table)
+
+
+def _range(value: object, place: str) -> tuple[str, tuple[float | None, float | None]]:
+    """Return a range of cells, or the ends of a span of time, s."""
+    expected = 'a span of time as "10 s : 25 s", open as "10 s :", or cells as "B4:E900"'
+    if not isinstance(value, str):
+        raise InputError("range", expected=expected, found=shown(value), where=place)
+    text = value.strip()
+    if not text:
+        return "", (None, None)
+    if cell_range(text) is not None:
+        return text.upper(), (None, None)
+    first, colon, last = text.partition(":")
+    if not colon or not (first.strip() or last.strip()):
+        raise InputError("range", expected=expected, found=shown(value), where=place)
+    ends = [
+        quantity(end, "time", name="range", where=place) if end.strip() else None
+        for end in (first, last)
+    ]
+    if None not in ends and not ends[0] < ends[1]:  # type: ignore[operator]  # neither is None
+        raise InputError("range", expected="rising", found=shown(value), where=place)
+    return "", (ends[0], ends[1])

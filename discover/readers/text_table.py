@@ -1,4 +1,4 @@
-"""CSV and TSV: fast where the file is regular, exact about line and column where it isn't."""
+"""CSV, TSV and other text: fast where a table is regular, exact about line and column else."""
 
 from __future__ import annotations
 
@@ -6,24 +6,57 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 import pyarrow as pa
 import pyarrow.csv as pa_csv
 
-from discover.readers.source import Source
-from models.checks import Array, InputError
+from discover.readers.content import content_error
+from discover.readers.layout import Layout, Rows, find_tables
+from discover.readers.numerals import value
+from discover.readers.sampling_note import stated_step
+from discover.readers.source import Book, Source
+from models.checks import Array, InputError, shown
 
-_LINE_END = re.compile(rb"\r\n|\n|\r")
 _LARGE = 16_000_000  # bytes from which threads pay
-_EMPTY = ("", "nan", "na", "n/a", "null", "none", "-", "#n/a")
+_SPACES = " "  # stands for any run of blanks between columns
+_DELIMITERS = ("\t", ";", ",", _SPACES)
+_MARKS = (b"#", b"%", b"//", b"'")
+_TRIED = 60  # lines that show what separates columns
+_BRACKETS = re.compile(r"\[[^\[\]]*\]|\([^()]*\)|\"[^\"]*\"")
 
 
-def open_text(data: bytes, name: str) -> Source:
-    """Open delimited text with one header line.
+@dataclass(frozen=True)
+class _Text:
+    """A file's lines."""
 
-    Comma, semicolon and tab separate; with the latter two a decimal comma is understood. Blank
-    lines and lines that begin with ``#`` before the header are skipped, a byte order mark too.
+    data: bytes
+    """With one kind of line end."""
+    starts: np.ndarray
+    """(N + 1,) where lines begin, then the end."""
+    delimiter: str
+    """Between columns."""
+
+    def line(self, row: int) -> str:
+        """Return a line's text."""
+        return _decoded(self.data[self.starts[row] : self.starts[row + 1]]).rstrip("\n")
+
+    def fields(self, row: int) -> list[str]:
+        """Return a line's fields, of a comment without its mark."""
+        text = self.line(row)
+        mark = next((m.decode() for m in _MARKS if text.lstrip().encode().startswith(m)), "")
+        if mark:
+            text = text.lstrip().removeprefix(mark).strip()
+        return _split_line(text, self.delimiter)
+
+
+def open_text(data: bytes, name: str) -> Book:
+    """Open text with columns: one table or several, each with what stands above it.
+
+    Tab, semicolon, comma and blanks separate; except between commas a decimal comma is
+    understood. Lines that begin with ``#``, ``%``, ``//`` or ``'`` are comments.
 
     Parameters
     ----------
@@ -34,118 +67,176 @@ def open_text(data: bytes, name: str) -> Source:
 
     Returns
     -------
-    Source
+    Book
 
     Raises
     ------
     InputError
-        On an empty or binary file, a header that is missing or repeats a name, and, on reading,
-        rows of the wrong length or fields that are not numbers, with their line.
+        On an empty or binary file or one without a table, and, on reading, rows of the wrong
+        length or fields that are not numbers, with their line.
     """
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        data = _decode(data, "utf-16", name).encode()
-    data = data.removeprefix(b"\xef\xbb\xbf")
+        try:
+            data = data.decode("utf-16").encode()
+        except UnicodeDecodeError as error:
+            raise content_error("text in utf-16", str(error.reason), name) from None
+    data = data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     if not data.strip():
-        raise _content_error("a header line and samples", "an empty file", name)
+        raise content_error("a header line and samples", "an empty file", name)
     if b"\0" in data[:4096]:
-        raise _content_error("text", "binary data", name)
-    line, number, start = _header_line(data, name)
-    delimiter = _delimiter(line, name)
-    headers = tuple(h.strip() for h in next(csv.reader([line], delimiter=delimiter)))
-    _check_headers(headers, name, number)
-    body = data[start:]
-    if not body.strip():
-        raise _content_error("a header line and samples", "only a header", name)
-    decimal = "," if delimiter != "," and b"," in body[:2000] else "."
+        raise content_error("text", "binary data", name)
+    text, rows = _lines(data, name)
+    tables = find_tables(rows) or [_plain_layout(text, rows, name)]
+    parts = []
+    for number, layout in enumerate(tables, start=1):
+        part = layout.title or f"table {number}" if len(tables) > 1 else ""
+        parts.append(_source(text, rows, layout, f"{name} [{part}]" if part else name, part))
+    step = stated_step(note for layout in tables for note in layout.notes)
+    return Book(name, tuple(_with_step(part, step) for part in parts))
+
+
+def _with_step(source: Source, step: float | None) -> Source:
+    if source.step is not None or step is None:
+        return source
+    return Source(**{**source.__dict__, "step": step})
+
+
+def _decoded(raw: bytes) -> str:
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
+def _lines(data: bytes, name: str) -> tuple[_Text, Rows]:
+    codes = np.frombuffer(data, dtype=np.uint8)
+    ends = np.flatnonzero(codes == ord("\n")) + 1
+    if not ends.size or ends[-1] != codes.size:
+        ends = np.r_[ends, codes.size]
+    starts = np.r_[0, ends]
+
+    def has(characters: bytes) -> np.ndarray:
+        wanted = np.zeros(256, dtype=np.uint8)
+        wanted[np.frombuffer(characters, dtype=np.uint8)] = 1
+        return np.add.reduceat(wanted[codes], starts[:-1], dtype=np.int32)
+
+    length = np.diff(starts)
+    digits = has(b"0123456789")
+    numeric = (has(b'0123456789+-.,;eE \t"\n') == length) & (digits > 0)
+    blank = has(b' \t,;\n"') == length
+    comment = np.zeros(length.size, dtype=bool)
+    for row in np.flatnonzero(~numeric & ~blank):
+        comment[row] = data[starts[row] : starts[row] + 200].lstrip().startswith(_MARKS)
+    filled = np.flatnonzero(~blank & ~comment)
+    if not filled.size and not comment.any():
+        raise content_error("a header line and samples", "an empty file", name)
+    text = _Text(data, starts, "")
+    samples = np.flatnonzero(numeric)
+    delimiter = _delimiter(text, samples if samples.size > 1 else filled, numbers=samples.size > 1)
+    text = _Text(data, starts, delimiter)
+    return text, Rows(numeric, blank, comment, text.fields)
+
+
+def _delimiter(text: _Text, rows: np.ndarray, *, numbers: bool) -> str:
+    """Return what splits lines of numbers, or else any lines, into equally many fields."""
+    some = np.linspace(0, rows.size - 1, min(rows.size, _TRIED)).astype(int)
+    lines = [text.line(int(row)) for row in rows[some]]
+    if not numbers:
+        lines = [_BRACKETS.sub("", line) for line in lines]
+    for delimiter in _DELIMITERS if numbers else _DELIMITERS[:3]:
+        split = [_split_line(line, delimiter) for line in lines]
+        widths = [len(fields) for fields in split]
+        usual = max(set(widths), key=widths.count, default=0)
+        same = [f for f in split if len(f) == usual]
+        if usual < 2 or (numbers and len(same) < 0.8 * len(split)):
+            continue
+        if not numbers or all(value(f, ",") is not None for fields in same for f in fields):
+            return delimiter
+    return ","
+
+
+def _split_line(line: str, delimiter: str) -> list[str]:
+    if delimiter == _SPACES:
+        return _split_blanks(line)
+    if '"' not in line:
+        return [field.strip() for field in line.split(delimiter)]
+    try:
+        return [field.strip() for field in next(csv.reader([line], delimiter=delimiter), [])]
+    except csv.Error:  # a field beyond what the module takes
+        return [field.strip() for field in line.split(delimiter)]
+
+
+def _split_blanks(line: str) -> list[str]:
+    """Return fields between blanks, a unit in brackets with the name before it."""
+    fields: list[str] = []
+    for word in line.split():
+        inside = fields and fields[-1].count("[") + fields[-1].count("(") > (
+            fields[-1].count("]") + fields[-1].count(")")
+        )
+        if inside or (fields and word[0] in "[("):
+            fields[-1] += f" {word}"
+        else:
+            fields.append(word)
+    return fields
+
+
+def _plain_layout(text: _Text, rows: Rows, name: str) -> Layout:
+    """Return the layout of a file in which no table stands out: header first, samples below."""
+    filled = np.flatnonzero(~rows.blank & ~rows.comment)
+    if not filled.size:
+        raise content_error("a header line and samples", "only comments", name)
+    header = int(filled[0])
+    headers = tuple(text.fields(header))
+    if len(headers) < 2:
+        raise InputError(
+            "header",
+            expected="names separated by comma, semicolon, tab or blanks, such as "
+            "time [s],displacement [mm],force [kN]",
+            found=shown(text.line(header)[:60]),
+            where=name,
+        )
+    if filled.size == 1:
+        raise content_error("a header line and samples", "only a header", name)
+    return Layout(headers, {}, header, header + 1, rows.count, "", ())
+
+
+def _source(text: _Text, rows: Rows, layout: Layout, name: str, part: str) -> Source:
+    body = text.data[text.starts[layout.first] : text.starts[layout.last]]
+    decimal = "," if text.delimiter != "," and b"," in body[:2000] else "."
+    beyond = text.fields(layout.first)[len(layout.headers) :]  # empty after a delimiter at the end
+    headers = layout.headers + ("",) * (0 if any(beyond) else len(beyond))
+    width = len(headers)
 
     def read(indices: Sequence[int]) -> list[Array]:
-        fast = _read_fast(body, len(headers), indices, delimiter, decimal)
+        fast = _read_fast(body, width, indices, text.delimiter, decimal)
         if fast is not None:
             return fast
-        return _read_slow(body, headers, indices, delimiter, decimal, name, number)
+        return _read_slow(text, rows, layout, headers, indices, decimal, name)
 
     def place(row: int) -> str:
-        for count, (at, _) in enumerate(_rows(body, delimiter, number, name)):
+        for count, at in enumerate(_samples(rows, layout)):
             if count == row:
-                return f"line {at}"
+                return f"line {at + 1}"
         return f"sample {row + 1}"
 
-    return Source(name, headers, read, place)
-
-
-def _content_error(expected: str, found: str, name: str) -> InputError:
-    return InputError("content", expected=expected, found=found, where=name)
-
-
-def _decode(data: bytes, encoding: str, name: str) -> str:
-    try:
-        return data.decode(encoding)
-    except UnicodeDecodeError as error:
-        raise _content_error(f"text in {encoding}", str(error.reason), name) from None
-
-
-def _header_line(data: bytes, name: str) -> tuple[str, int, int]:
-    """Return the header line, its number from 1, and where the next line begins."""
-    start, number = 0, 0
-    while start < len(data):
-        end = _LINE_END.search(data, start)
-        stop, after = (end.start(), end.end()) if end else (len(data), len(data))
-        raw = data[start:stop]
-        number += 1
-        if raw.strip() and not raw.lstrip().startswith(b"#"):
-            try:
-                return raw.decode("utf-8"), number, after
-            except UnicodeDecodeError:
-                return raw.decode("latin-1"), number, after
-        start = after
-    raise _content_error("a header line and samples", "only comments", name)
-
-
-def _delimiter(line: str, name: str) -> str:
-    """Return what separates the header's names: tab before semicolon before comma."""
-    plain = re.sub(r"\[[^\]]*\]|\([^)]*\)|\"[^\"]*\"", "", line)
-    for delimiter in ("\t", ";", ","):
-        if delimiter in plain:
-            return delimiter
-    raise InputError(
-        "header",
-        expected="names separated by comma, semicolon or tab, such as "
-        "time [s],displacement [mm],force [kN]",
-        found=repr(line[:60]),
-        where=name,
+    return Source(
+        name, headers, read, place, part, units=layout.units, step=stated_step(layout.notes)
     )
 
 
-def _check_headers(headers: tuple[str, ...], name: str, number: int) -> None:
-    where = f"{name} line {number}"
-    if all(_is_number(h) for h in headers if h):
-        raise InputError(
-            "header",
-            expected="names with units, such as time [s],displacement [mm],force [kN]",
-            found=", ".join(headers)[:60],
-            where=where,
-        )
-    seen: set[str] = set()
-    for header in headers:
-        if header and header in seen:
-            raise InputError("header", expected="unique", found=f"{header!r} twice", where=where)
-        seen.add(header)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text.replace(",", "."))
-    except ValueError:
-        return False
-    return True
+def _samples(rows: Rows, layout: Layout) -> Iterator[int]:
+    span = slice(layout.first, layout.last)
+    return iter((np.flatnonzero(~(rows.blank[span] | rows.comment[span])) + layout.first).tolist())
 
 
 def _read_fast(
     body: bytes, width: int, indices: Sequence[int], delimiter: str, decimal: str
 ) -> list[Array] | None:
-    """Return the columns by pyarrow, or None where the file is not regular."""
+    """Return the columns by a library, or None where the table is not regular."""
     names = [f"c{i}" for i in range(width)]
     wanted = [names[i] for i in indices]
+    if delimiter == _SPACES:
+        return _read_blanks(body, names, wanted, decimal)
     try:
         table = pa_csv.read_csv(
             io.BytesIO(body),
@@ -157,60 +248,56 @@ def _read_fast(
                 decimal_point=decimal,
             ),
         )
-    except pa.ArrowInvalid:
+    except (pa.ArrowException, OSError):
         return None
     return [np.array(table.column(key).to_numpy(), dtype=np.float64) for key in wanted]
 
 
-def _rows(
-    body: bytes, delimiter: str, header_number: int, name: str
-) -> Iterator[tuple[int, list[str]]]:
-    """Yield the line number and the fields of every line that isn't blank."""
+def _read_blanks(
+    body: bytes, names: list[str], wanted: list[str], decimal: str
+) -> list[Array] | None:
     try:
-        text = body.decode("utf-8")
-    except UnicodeDecodeError:
-        text = body.decode("latin-1")
-    lines = io.StringIO(text, newline=None)
-    reader = csv.reader(lines, delimiter=delimiter)
-    try:
-        for fields in reader:
-            if len(fields) > 1 or (fields and fields[0].strip()):
-                yield header_number + reader.line_num, fields
-    except csv.Error as error:
-        where = f"{name} line {header_number + reader.line_num}"
-        raise InputError("row", expected="delimited text", found=str(error), where=where) from None
+        table = pd.read_csv(
+            io.BytesIO(body), sep=r"\s+", header=None, names=names, usecols=wanted, decimal=decimal,
+            dtype=dict.fromkeys(wanted, np.float64), index_col=False, on_bad_lines="error",
+        )  # fmt: skip
+    except (ValueError, pd.errors.ParserError):
+        return None
+    if table.isna().to_numpy().any():  # a short line is filled up in silence
+        return None
+    return [table[key].to_numpy(copy=True) for key in wanted]
 
 
 def _read_slow(
-    body: bytes,
+    text: _Text,
+    rows: Rows,
+    layout: Layout,
     headers: tuple[str, ...],
     indices: Sequence[int],
-    delimiter: str,
     decimal: str,
     name: str,
-    number: int,
 ) -> list[Array]:
     """Return the columns line by line, or say which line and column is wrong."""
     columns: list[list[float]] = [[] for _ in indices]
-    for at, fields in _rows(body, delimiter, number, name):
-        if len(fields) != len(headers):
+    least = len(headers)
+    while least and not headers[least - 1]:
+        least -= 1
+    for at in _samples(rows, layout):
+        fields = text.fields(at)
+        where = f"{name} line {at + 1}"
+        if not least <= len(fields) <= len(headers):
             more = " (decimal commas need semicolons or tabs between columns)"
             raise InputError(
                 "number of columns",
-                expected=f"{len(headers)} as in the header",
+                expected=f"{least} as in the header",
                 found=str(len(fields)) + (more if len(fields) > len(headers) else ""),
-                where=f"{name} line {at}",
+                where=where,
             )
         for column, index in zip(columns, indices, strict=True):
-            column.append(_value(fields[index], headers[index], decimal, f"{name} line {at}"))
+            found = value(fields[index], decimal)
+            if found is None:
+                raise InputError(
+                    headers[index], expected="a number", found=shown(fields[index]), where=where
+                )
+            column.append(found)
     return [np.array(column) for column in columns]
-
-
-def _value(field: str, header: str, decimal: str, where: str) -> float:
-    text = field.strip()
-    if text.lower() in _EMPTY:
-        return float("nan")
-    try:
-        return float(text.replace(decimal, "."))
-    except ValueError:
-        raise InputError(header, expected="a number", found=repr(text[:40]), where=where) from None

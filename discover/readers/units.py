@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pint
 
-from models.checks import Array, InputError, number
+from models.checks import Array, InputError, number, shown
 
 SI_UNITS = {
     "time": "s",
@@ -28,6 +28,9 @@ SI_UNITS = {
     "temperature": "K",
 }
 """Every kind of quantity that a campaign may hold, with its SI unit."""
+
+SMALLEST, LARGEST = 1e-30, 1e30
+"""In SI: beyond them a square is no number."""
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![.\d])")
 _OTHER = {
@@ -73,11 +76,10 @@ def _conversion(text: str, kind: str) -> _Conversion:
     if len(name) > 60 or not _UNIT.fullmatch(name):
         raise ValueError(f"{text!r}, which is not a unit")
     registry = _registry()
-    try:
-        unit = registry.parse_units(name)
-        dimension = unit.dimensionality
-    except Exception:  # pint's parser lets errors of many kinds through
-        raise ValueError(f"{text!r}, which is not a known unit") from None
+    unit = _parsed(name)
+    if unit is None:
+        raise ValueError(f"{text!r}, which is not a known unit")
+    dimension = unit.dimensionality
     target = SI_UNITS[kind]
     if dimension != registry.parse_units(target).dimensionality:
         slip = kind == "acceleration" and str(unit) in ("gram", "gauss")
@@ -94,6 +96,18 @@ def _conversion(text: str, kind: str) -> _Conversion:
     if inverse and math.isclose(inverse * factor, 1.0, rel_tol=1e-12):
         return _Conversion(1.0, float(inverse), 0.0)
     return _Conversion(factor, 1.0, 0.0)
+
+
+def _parsed(name: str) -> Any:
+    """Return pint's unit of a name, written out with a capital too; None where there is none."""
+    for written in (name, name.lower()) if len(name) > 2 and name.isalpha() else (name,):
+        try:
+            unit = _registry().parse_units(written)
+            unit.dimensionality  # noqa: B018 - which looks every part of it up
+        except Exception:  # pint's parser lets errors of many kinds through
+            continue
+        return unit
+    return None
 
 
 def _dimension(unit: Any) -> str:
@@ -117,7 +131,7 @@ def check_unit(text: object, kind: str, *, name: str, where: str) -> str:
     """
     expected = f"in a unit of {kind} such as {SI_UNITS[kind]!r}"
     if not isinstance(text, str):
-        raise InputError(name, expected=expected, found=repr(text), where=where)
+        raise InputError(name, expected=expected, found=shown(text), where=where)
     try:
         _conversion(text, kind)
     except ValueError as error:
@@ -189,9 +203,27 @@ def quantity(value: object, kind: str, *, name: str, where: str) -> float:
     match = _NUMBER.match(_tidy(text))
     unit = _tidy(text)[match.end() :].strip() if match else ""
     if match is None or not unit:
-        raise InputError(name, expected=expected, found=repr(value), where=where)
+        raise InputError(name, expected=expected, found=shown(value), where=where)
     try:
         _conversion(unit, kind)
     except ValueError as error:
         raise InputError(name, expected=expected, found=str(error), where=where) from None
-    return number(name, float(to_si(np.array([float(match.group(1))]), unit, kind)[0]), where=where)
+    si = number(name, float(to_si(np.array([float(match.group(1))]), unit, kind)[0]), where=where)
+    if si and not SMALLEST <= abs(si) <= LARGEST:
+        raise InputError(
+            name, expected=f"of a size from {SMALLEST:g} to {LARGEST:g} {SI_UNITS[kind]}",
+            found=f"{si:.3g}", where=where,
+        )  # fmt: skip
+    return si
+
+
+def is_unit(text: str) -> bool:
+    """Return whether text is the name of a unit, of whatever kind.
+
+    Examples
+    --------
+    >>> is_unit("kN"), is_unit("mm/s"), is_unit("Force"), is_unit("12 mm")
+    (True, True, False, False)
+    """
+    tidy = _tidy(text)
+    return len(tidy) <= 20 and bool(_UNIT.fullmatch(tidy)) and _parsed(tidy) is not None

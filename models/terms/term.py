@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from models.checks import Array, InputError, number
+from models.checks import Array, InputError, number, shown
 from models.motion import Motion
 from models.terms.scales import Scales
 
@@ -175,7 +175,7 @@ class Term:
                 raise InputError(
                     f"parameter {name!r} of {self.id}",
                     expected="one of " + (", ".join(known) or "none"),
-                    found=repr(name),
+                    found=shown(name),
                 )
         result = {}
         for name, parameter in known.items():

@@ -104,3 +104,26 @@ def test_python_m_discover_is_the_same_command(tmp_path):
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("inerter ")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["discover", "--exponents", "1e300"], "--exponents: value must be a finite number >="),
+        (["discover", "--exponents", "1:9:0.5"], "--exponents: stop must be a finite number >="),
+        (["discover", "--orders", "nan"], "--orders: value must be a finite number"),
+        (["discover", "--criterion", "nan"], "--criterion: criterion must be a finite number > 0"),
+        (["discover", "--criterion=-5"], "--criterion: criterion must be a finite number > 0"),
+        (["synth", "out", "--device", "device-12", "--frequencies", "1e-9"], "--frequencies:"),
+        (["synth", "out", "--device", "device-12", "--amplitudes", "1e300"], "--amplitudes: value"),
+        (["synth", "out", "--device", "device-12", "--noise", "1e300%"], "--noise: size must be"),
+    ],
+)
+def test_numbers_that_no_study_can_serve_are_refused_at_once(
+    arguments, message, capsys, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    err = capsys.readouterr().err
+    assert message in err
+    assert err.count("\n") == 1

@@ -119,7 +119,7 @@ def test_hash_depends_on_the_bytes_and_not_on_the_place(tmp_path: Path) -> None:
     [
         ("[[records]\n", r"campaign.toml is not valid TOML: Expected .*line 1"),
         ('title = "\xb5"'.encode("latin-1"), "campaign.toml must be in UTF-8"),
-        ("title = 3\n" + ONE, "campaign.toml: title must be text, got 3"),
+        ("title = 3\n" + ONE, "campaign.toml: title must be text of at most 400 characters, got 3"),
         ('titel = "x"\n' + ONE, r"key 'titel' must be one of title, .* \(did you mean 'title'\?\)"),
         ('title = "x"\n', r"campaign.toml: \[\[records\]\] must be at least one table .* got none"),
         ('records = "a.csv"\n', r"\[\[records\]\] must be at least one table"),
@@ -187,7 +187,7 @@ def test_toml_that_is_wrong_is_one_error_that_says_where(
         (".", "got a folder"),
         ("a\\u0000.csv", "null byte"),
         ("a" * 3000 + ".csv", "File name too long"),
-        ("fifo.csv", "got nothing there|got no file"),
+        ("fifo.csv", "got a pipe"),
     ],
 )
 def test_paths_stay_inside_the_folder(tmp_path: Path, name: str, found: str) -> None:
@@ -219,12 +219,13 @@ def test_toml_outside_the_folder_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_none(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="nowhere must be a campaign folder, got nothing"):
+    with pytest.raises(InputError, match="nowhere must be a campaign folder, .* got nothing"):
         read_campaign(tmp_path / "nowhere")
-    with pytest.raises(InputError, match=r"a.csv must be a campaign folder, got a file"):
-        read_campaign(campaign(tmp_path / "c") / "a.csv")
+    (tmp_path / "notes.md").write_text("")
+    with pytest.raises(InputError, match="notes.md must be a campaign folder.* got a file of"):
+        read_campaign(tmp_path / "notes.md")
     (tmp_path / "empty").mkdir()
-    with pytest.raises(InputError, match="'campaign.toml' must be in the campaign folder"):
+    with pytest.raises(InputError, match="'campaign.toml' must be .*`inerter init .*empty` wr"):
         read_campaign(tmp_path / "empty")
 
 

@@ -1,4 +1,4 @@
-"""The README's campaign.toml in full, read by the reader: nothing in it is wrong or missing."""
+"""The documented campaign.toml in full, read by the reader: nothing in it is wrong or missing."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.io import savemat
 
@@ -16,7 +17,7 @@ from discover.readers.columns import QUANTITIES
 from models.checks import InputError
 from models.device import Device
 
-README = Path(__file__).parents[3] / "README.md"
+PAGE = Path(__file__).parents[3] / "docs" / "campaign.md"
 TIME = np.arange(4000) / 500.0
 PHASE = 2.0 * np.pi * TIME
 MOTION = np.array(
@@ -25,7 +26,7 @@ MOTION = np.array(
 
 
 def block() -> str:
-    _, section = README.read_text(encoding="utf-8").split("### campaign.toml in full")
+    _, section = PAGE.read_text(encoding="utf-8").split("### campaign.toml in full")
     found = re.search(r"```toml\n(.*?)```", section, re.DOTALL)
     assert found is not None
     return found[1]
@@ -33,7 +34,7 @@ def block() -> str:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """The README's campaign with records of 10 mm at 1 Hz in the units that it states."""
+    """The page's campaign with records of 10 mm at 1 Hz in the units that it states."""
     toml = block()
     table = tomllib.loads(toml)
     x, v, a = 0.01 * MOTION
@@ -49,9 +50,12 @@ def folder(tmp_path: Path) -> Path:
     }
     columns = {table["columns"][quantity]: values for quantity, values in in_units.items()}
     rows = np.array(list(columns.values())).T
-    sine, other = (r["file"] for r in table["records"])
+    sine, other, book = (r["file"] for r in table["records"])
     np.savetxt(tmp_path / sine, rows, delimiter=",", header=",".join(columns), comments="")
-    savemat(tmp_path / other, {"run": columns})
+    savemat(tmp_path / other, {"run": columns, "calibration": {"gain": np.arange(5.0)}})
+    with pd.ExcelWriter(tmp_path / book) as writer:
+        pd.DataFrame(columns).to_excel(writer, sheet_name="up", index=False)
+        pd.DataFrame({"done": ["by us"]}).to_excel(writer, sheet_name="notes", index=False)
     (tmp_path / CAMPAIGN_FILE).write_text(toml, encoding="utf-8")
     return tmp_path
 
@@ -109,7 +113,8 @@ def test_every_key_that_the_reader_knows_is_in_it(folder: Path, table: str, plac
     shown = tomllib.loads(block())
     for part in filter(None, place.split(".")):
         shown = shown[part]
-    shown_keys = set(shown[0] if isinstance(shown, list) else shown)
+    tables = shown if isinstance(shown, list) else [shown]
+    shown_keys = {key for table in tables for key in table}
     assert known == shown_keys
 
 

@@ -1,0 +1,39 @@
+"""Ctrl-C and a polite kill as one interrupt, from the program's first moment to its last.
+
+What stands here is loaded before anything else, so it imports next to nothing.
+"""
+
+from __future__ import annotations
+
+import signal
+
+_NUMBERS = (signal.SIGINT, signal.SIGTERM)
+_state = {"leaving": False}
+
+
+def leaving() -> None:
+    """Let no further interrupt disturb the way out."""
+    _state["leaving"] = True
+
+
+def _interrupt(number: int, frame: object) -> None:
+    if not _state["leaving"]:
+        raise KeyboardInterrupt
+
+
+def begin() -> None:
+    """Turn SIGINT and SIGTERM into `KeyboardInterrupt`.
+
+    Signals that whoever started the program had it ignore stay ignored.
+    """
+    _state["leaving"] = False
+    for number in _NUMBERS:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, _interrupt)
+
+
+def end() -> None:
+    """Ignore both signals: the answer is given, and Python needs a moment to end."""
+    leaving()
+    for number in _NUMBERS:  # Python takes handlers of its own away before it has ended
+        signal.signal(number, signal.SIG_IGN)

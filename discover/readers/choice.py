@@ -1,0 +1,112 @@
+"""Which table of a file is a record: the one that is asked for, or the only one that can be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fnmatch import fnmatchcase
+
+from discover.readers.columns import find_column
+from discover.readers.entries import Entry
+from discover.readers.source import Book, Source
+from models.checks import InputError, nearest, shown
+
+_NEEDED = ("time", "displacement", "force")
+
+
+def chosen_sources(book: Book, entry: Entry, names: Mapping[str, str]) -> list[Source]:
+    """Return the tables of a file that an entry asks for.
+
+    Parameters
+    ----------
+    book : Book
+        The opened file.
+    entry : Entry
+        What ``campaign.toml`` says of it. A pattern of parts gives every one that has a record's
+        columns.
+    names : mapping
+        Headers by quantity.
+
+    Raises
+    ------
+    InputError
+        Where the file has no such part, or several could be meant.
+    """
+    if entry.part is None:
+        source = _only(book, entry, names)
+        return [_cut(book, source, entry)]
+    if entry.key != book.key:
+        raise InputError(
+            f"key {entry.key!r}", expected=f"{book.key!r} for a file of this kind",
+            found=shown(entry.part), where=entry.file,
+        )  # fmt: skip
+    listed = [part.part for part in book.parts]
+    if isinstance(entry.part, int):
+        if not 1 <= entry.part <= len(listed):
+            raise InputError(
+                book.key, expected=f"from 1 to {len(listed)}", found=shown(entry.part),
+                where=entry.file,
+            )  # fmt: skip
+        return [_cut(book, book.parts[entry.part - 1], entry)]
+    wanted = entry.part.strip()
+    if wanted in listed:
+        return [_cut(book, book.parts[listed.index(wanted)], entry)]
+    fitting = [part for part in book.parts if fnmatchcase(part.part, wanted)]
+    able = [part for part in fitting if has_record(part, entry, names)] or fitting
+    if not able:
+        raise InputError(
+            book.key, expected="one of " + _listed(listed),
+            found=shown(entry.part) + nearest(wanted, listed), where=entry.file,
+        )  # fmt: skip
+    return [_cut(book, part, entry) for part in able]
+
+
+def has_record(source: Source, entry: Entry, names: Mapping[str, str]) -> bool:
+    """Return whether a table has what a record needs: force, time, and motion unless labelled."""
+    timed = source.step is not None or entry.step is not None
+    labelled = entry.frequency is not None and entry.amplitude is not None
+    for quantity in _NEEDED:
+        if (quantity == "time" and timed) or (quantity == "displacement" and labelled):
+            continue
+        try:
+            found = find_column(source, quantity, names.get(quantity, quantity))
+        except InputError:
+            return False
+        if found is None:
+            return False
+    return True
+
+
+def _only(book: Book, entry: Entry, names: Mapping[str, str]) -> Source:
+    if len(book.parts) == 1:
+        return book.parts[0]
+    if book.whole is not None and has_record(book.whole, entry, names):
+        return book.whole
+    able = [part for part in book.parts if has_record(part, entry, names)]
+    if len(able) == 1:
+        return able[0]
+    if not able:
+        return book.whole or book.parts[0]  # which says what it lacks
+    raise InputError(
+        book.key,
+        expected='given in [[records]], as one of ' + _listed([p.part for p in able])
+        + ', or as "*" for a record each',
+        found="none",
+        where=entry.file,
+    )  # fmt: skip
+
+
+def _listed(names: list[str]) -> str:
+    shown_names = [shown(name, longest=40) for name in names[:12]]
+    more = f" and {len(names) - 12} more" if len(names) > 12 else ""
+    return ", ".join(shown_names) + more
+
+
+def _cut(book: Book, source: Source, entry: Entry) -> Source:
+    if not entry.cells:
+        return source
+    if book.cells is None:
+        raise InputError(
+            "range", expected='a span of time, as "10 s : 25 s"', found=shown(entry.cells),
+            where=entry.file,
+        )  # fmt: skip
+    return book.cells(source.part, entry.cells)

@@ -1,0 +1,334 @@
+"""A ``campaign.toml`` from what lies in a folder: what is guessed, how surely, and why."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from discover.readers.columns import find_column, split_header
+from discover.readers.entries import Entry
+from discover.readers.fastest_motion import fastest_motion
+from discover.readers.formats import OPENERS, open_book
+from discover.readers.guess import UNSURE, Guess, TableGuess, guess_table
+from discover.readers.record import read_record
+from discover.readers.source import Book, Source
+from discover.readers.toml_text import campaign_text
+from discover.records import Finding, Record
+from models.checks import InputError, printable
+
+_LARGER = ("mm", "ms", "kN")  # of two guesses of a unit the one that some record needs
+_QUARTER = 4
+_NO_TIME = "no column for time among"
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What the user says in place of a guess."""
+
+    columns: Mapping[str, str]
+    """Headers by quantity."""
+    units: Mapping[str, str]
+    """Units by quantity, for columns whose unit the files do not state."""
+    sampling_rate: float | None = None
+    """Hz, of files without a time column."""
+
+
+class TimeMissing(InputError):
+    """Files that lack nothing but time: a sampling rate would do."""
+
+
+@dataclass(frozen=True)
+class DraftRecord:
+    """One test that was found."""
+
+    entry: Entry
+    """What ``campaign.toml`` will say of it."""
+    guess: TableGuess
+    """What its columns are taken for."""
+    record: Record
+    """As read."""
+    findings: tuple[Finding, ...]
+    """Of reading it."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """A guess that the user should look at."""
+
+    quantity: str
+    """Column that it is of."""
+    key: str
+    """"columns" or "units"."""
+    taken: str
+    """The header or the unit that was taken."""
+    choices: tuple[str, ...]
+    """What it may be besides, the taken one first."""
+    why: str
+    """In words."""
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A campaign that nobody wrote yet."""
+
+    title: str
+    """The folder's name, or the user's."""
+    columns: Mapping[str, str]
+    """``[columns]``."""
+    units: Mapping[str, str]
+    """``[units]``."""
+    records: tuple[DraftRecord, ...]
+    """In the order of the files."""
+    left_out: tuple[tuple[str, str], ...]
+    """Files or parts of them that are no record, with why."""
+    doubts: tuple[Doubt, ...]
+    """What is unsure."""
+    device: str = ""
+    """A preset, "" for none."""
+
+    def toml(self) -> str:
+        """Return ``campaign.toml``, with why beside what was guessed."""
+        return campaign_text(
+            title=self.title,
+            device=self.device,
+            columns=self.columns,
+            units=self.units,
+            tests=[(record.entry, record.guess) for record in self.records],
+        )
+
+
+def draft_campaign(
+    folder: Path, files: Sequence[str], *, title: str, answers: Answers, device: str = ""
+) -> Draft:
+    """Return the campaign that some files of a folder make.
+
+    Parameters
+    ----------
+    folder : Path
+        That the campaign will lie in.
+    files : sequence of str
+        Paths inside it.
+    title : str
+        Of the campaign.
+    answers : Answers
+        What the user said.
+    device : str
+        A preset, "" for none.
+
+    Raises
+    ------
+    InputError
+        Where no file holds a record; it says why of the first.
+    """
+    found: list[tuple[Entry, Source, TableGuess]] = []
+    left_out: list[tuple[str, str]] = []
+    for file in files:
+        entry = Entry(file, step=_step(answers))
+        try:
+            book = open_book((folder / file).read_bytes(), file, where=file)
+        except InputError as error:
+            left_out.append((file, str(error)))
+            continue
+        parts, lacking = _tables(book, answers, stepped=entry.step is not None)
+        found += [(_named(entry, book, source), source, guess) for source, guess in parts]
+        if not parts:
+            left_out.append((file, lacking))
+    units = _units([guess for _, _, guess in found], answers)
+    columns = _columns([(source, guess) for _, source, guess in found])
+    records: list[DraftRecord] = []
+    for entry, source, guess in found:
+        own = _own_channel(source, guess, columns)
+        try:
+            read = read_record(
+                source,
+                replace(entry, channel=own),
+                names={**columns, **own},
+                units=units,
+                part=str(entry.part or ""),
+            )
+        except InputError as error:
+            left_out.append((entry.label(str(entry.part or "")), str(error)))
+            continue
+        record, findings, _ = read
+        records.append(DraftRecord(replace(entry, channel=own), guess, record, tuple(findings)))
+    if not records:
+        file, why = left_out[0] if left_out else ("", "no file that can be read")
+        more = f" (and {len(left_out) - 1} more files)" if len(left_out) > 1 else ""
+        kind = TimeMissing if _NO_TIME in why else InputError
+        raise kind(
+            "files",
+            expected="at least one with time (or a sampling rate), displacement and force",
+            found=(f"{file}: " if file and not why.startswith(file) else "") + why + more,
+            where=str(folder),
+        )
+    kept = {quantity for record in records for quantity in record.guess.columns}
+    return Draft(
+        title,
+        {quantity: header for quantity, header in columns.items() if quantity in kept},
+        {quantity: unit for quantity, unit in units.items() if quantity in kept},
+        _held_out(records),
+        tuple(left_out),
+        _doubts([r.guess for r in records], answers),
+        device,
+    )
+
+
+def record_files(folder: Path) -> list[str]:
+    """Return the files below a folder that may be records, hidden ones and results left out."""
+    found = []
+    for path in sorted(folder.rglob("*")):
+        inside = path.relative_to(folder)
+        hidden = any(part.startswith(".") or part == "inerter-out" for part in inside.parts)
+        if not hidden and path.suffix.lower() in OPENERS and path.is_file():
+            found.append(inside.as_posix())
+    return found
+
+
+def _step(answers: Answers) -> float | None:
+    return None if answers.sampling_rate is None else 1.0 / answers.sampling_rate
+
+
+def _tables(
+    book: Book, answers: Answers, *, stepped: bool
+) -> tuple[list[tuple[Source, TableGuess]], str]:
+    """Return the tables that can be records, or none and what the first one lacks."""
+    whole = [] if book.whole is None else [book.whole]
+    first = ""
+    for sources in (book.parts, whole):
+        able = []
+        for source in sources:
+            guess = _guessed(source, answers)
+            lacks = [q for q in guess.lacks if not (q == "time" and stepped)]
+            if not lacks:
+                able.append((source, guess))
+            elif not first:
+                names = ", ".join(source.headers[:12])
+                first = f"no column for {' and '.join(lacks)} among {printable(names)}"
+        if able:
+            return able, ""
+    return [], first
+
+
+def _guessed(source: Source, answers: Answers) -> TableGuess:
+    """Return a table's guess with the columns that the user named."""
+    guess = guess_table(source)
+    columns = dict(guess.columns)
+    for quantity, header in answers.columns.items():
+        index = find_column(source, quantity, header)
+        if index is None:
+            continue
+        named = source.headers[index]
+        columns = {q: g for q, g in columns.items() if g.header != named or q == quantity}
+        stated = split_header(named)[1] or source.units.get(index) or ""
+        unit = (
+            stated or answers.units.get(quantity, "") or _unit_of(columns.get(quantity), quantity)
+        )
+        columns[quantity] = Guess(quantity, named, "sure", "you said so", unit, bool(stated))
+    missing = [q for q in ("time", "force", "displacement") if q not in columns]
+    timed = source.step is not None
+    lacks = tuple(q for q in missing if not (q == "time" and timed))
+    return TableGuess(columns, lacks)
+
+
+def _unit_of(guess: Guess | None, quantity: str) -> str:
+    return guess.unit if guess else {"time": "s", "force": "N"}.get(quantity, "m")
+
+
+def _named(entry: Entry, book: Book, source: Source) -> Entry:
+    """Return the entry with the part of the file, where it has several."""
+    if len(book.parts) == 1 or not source.part:
+        return entry
+    return replace(entry, key=book.key, part=source.part)
+
+
+def _units(guesses: Sequence[TableGuess], answers: Answers) -> dict[str, str]:
+    """Return ``[units]``: what some file does not state, by the user, another file or a guess."""
+    units = {}
+    for quantity in ("time", "displacement", "force", "velocity", "acceleration", "temperature"):
+        own = [g.columns[quantity] for g in guesses if quantity in g.columns]
+        open_ = [g.unit for g in own if not g.unit_stated]
+        if not open_:
+            continue
+        stated = Counter(g.unit for g in own if g.unit_stated)
+        larger = [unit for unit in _LARGER if unit in open_]
+        likely = stated.most_common(1)[0][0] if stated else (larger or open_)[0]
+        units[quantity] = answers.units.get(quantity, likely)
+    return units
+
+
+def _columns(tables: Sequence[tuple[Source, TableGuess]]) -> dict[str, str]:
+    """Return ``[columns]``: the usual headers, where they are not found by the quantity's name."""
+    columns = {}
+    for quantity in ("time", "displacement", "force", "velocity", "acceleration", "temperature"):
+        own = [(s, g.columns[quantity]) for s, g in tables if quantity in g.columns]
+        names = Counter(_short(s, g) for s, g in own)
+        if names and any(not _found(s, quantity, quantity, g.header) for s, g in own):
+            columns[quantity] = names.most_common(1)[0][0]
+    return columns
+
+
+def _short(source: Source, guess: Guess) -> str:
+    """Return a header's name without its unit, where that finds it too."""
+    plain = split_header(guess.header)[0]
+    return plain if _found(source, guess.quantity, plain, guess.header) else guess.header
+
+
+def _found(source: Source, quantity: str, wanted: str, header: str) -> bool:
+    try:
+        index = find_column(source, quantity, wanted)
+    except InputError:
+        return False
+    return index is not None and source.headers[index] == header
+
+
+def _own_channel(source: Source, guess: TableGuess, columns: Mapping[str, str]) -> dict[str, str]:
+    """Return a record's own headers, where they are not those of ``[columns]``."""
+    return {
+        quantity: _short(source, own)
+        for quantity, own in guess.columns.items()
+        if not _found(source, quantity, columns.get(quantity, quantity), own.header)
+    }
+
+
+def _held_out(records: Sequence[DraftRecord]) -> tuple[DraftRecord, ...]:
+    """Return the records with a quarter of them held out, evenly over their speeds."""
+    count = max(1, len(records) // _QUARTER) if len(records) > 2 else 0
+    order = sorted(range(len(records)), key=lambda i: (_speed(records[i].record), i))
+    places = np.linspace(0.0, len(records) - 1.0, 2 * count + 1)[1::2].round().astype(int)
+    chosen = {order[place] for place in places}
+    return tuple(
+        replace(
+            r, entry=replace(r.entry, held_out=True), record=replace(r.record, held_out=True)
+        )
+        if i in chosen
+        else r
+        for i, r in enumerate(records)
+    )  # fmt: skip
+
+
+def _speed(record: Record) -> float:
+    if record.displacement is None:
+        return 0.0
+    return float(np.ptp(record.displacement)) * fastest_motion(record.time, record.displacement)
+
+
+def _doubts(guesses: Sequence[TableGuess], answers: Answers) -> tuple[Doubt, ...]:
+    """Return what is unsure, each once."""
+    doubts: dict[tuple[str, str], Doubt] = {}
+    for table in guesses:
+        for quantity, guess in table.columns.items():
+            if guess.sure == UNSURE:
+                choices = (guess.header, *guess.others)
+                doubt = Doubt(quantity, "columns", guess.header, choices, guess.why)
+                doubts.setdefault((quantity, "columns"), doubt)
+            if not guess.unit_stated and quantity not in answers.units:
+                kinds = {"time": ("s", "ms"), "displacement": ("m", "mm"), "force": ("N", "kN")}
+                choices = (guess.unit, *(u for u in kinds.get(quantity, ()) if u != guess.unit))
+                why = "no file states it; taken by the size of the values"
+                doubt = Doubt(quantity, "units", guess.unit, choices, why)
+                doubts.setdefault((quantity, "units"), doubt)
+    return tuple(doubts.values())

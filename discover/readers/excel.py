@@ -1,0 +1,142 @@
+"""Excel workbooks as sources of columns (openpyxl through pandas)."""
+
+from __future__ import annotations
+
+import datetime
+import io
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from discover.readers.content import check_unpacked, content_error, optional_package
+from discover.readers.layout import Layout, Rows, find_tables
+from discover.readers.numerals import value
+from discover.readers.sampling_note import stated_step
+from discover.readers.source import Book, Source
+from models.checks import Array, InputError, shown
+
+_CELLS = re.compile(r"([A-Z]{1,3})([1-9]\d{0,6}):([A-Z]{1,3})([1-9]\d{0,6})")
+
+
+def open_excel(data: bytes, name: str) -> Book:
+    """Open a workbook: every table of every sheet, formulas by the values that were saved.
+
+    Raises
+    ------
+    InputError
+        Where it is no workbook, holds no table, or openpyxl is missing.
+    """
+    optional_package("openpyxl", extra="xlsx", name=name)
+    check_unpacked(data, "an Excel workbook", name)
+    try:
+        sheets = pd.read_excel(
+            io.BytesIO(data), sheet_name=None, header=None, engine="openpyxl", dtype=object
+        )
+    except Exception as error:  # the library lets errors of many kinds through
+        raise content_error("an Excel workbook", error, name) from None
+    cells = {str(sheet): frame.to_numpy(dtype=object) for sheet, frame in sheets.items()}
+    parts = [s for sheet, values in cells.items() for s in _sources(name, sheet, values)]
+    if not parts:
+        raise content_error("a table of samples", f"none in {len(sheets)} sheets", name)
+
+    def cut(part: str, text: str) -> Source:
+        span = cell_range(text)
+        sheet = next(s for s in sorted(cells, key=len, reverse=True) if part.startswith(s))
+        found = [] if span is None else _sources(name, sheet, cells[sheet][span])
+        if len(found) != 1:
+            raise InputError(
+                "range", expected="the cells of one table with its header, as B4:E900",
+                found=shown(text), where=f"{name} [{sheet}]",
+            )  # fmt: skip
+        return found[0]
+
+    return Book(name, tuple(parts), key="sheet", cells=cut)
+
+
+def cell_range(text: str) -> tuple[slice, slice] | None:
+    """Return the rows and columns of ``B4:E900``, or None where the text is no such range.
+
+    Examples
+    --------
+    >>> cell_range("B4:C9")
+    (slice(3, 9, None), slice(1, 3, None))
+    """
+    match = _CELLS.fullmatch(text.strip().upper())
+    if match is None:
+        return None
+    left, top, right, bottom = match.groups()
+    return slice(int(top) - 1, int(bottom)), slice(_column(left), _column(right) + 1)
+
+
+def _column(letters: str) -> int:
+    number = 0
+    for letter in letters:
+        number = 26 * number + ord(letter) - ord("A") + 1
+    return number - 1
+
+
+def _sources(name: str, sheet: str, cells: np.ndarray[Any, Any]) -> list[Source]:
+    tables = find_tables(_rows(cells)) if cells.size else []
+    sources = []
+    for number, layout in enumerate(tables, start=1):
+        part = sheet if number == 1 else f"{sheet} {layout.title or number}"
+        sources.append(_source(cells, layout, f"{name} [{part}]", part))
+    return sources
+
+
+def _rows(cells: np.ndarray[Any, Any]) -> Rows:
+    texts = [[_text(cell) for cell in row] for row in cells]
+    numbers = [[isinstance(cell, int | float) for cell in row] for row in cells]
+    filled = [[bool(field) for field in row] for row in texts]
+    marked = [next((f for f in row if f), "").startswith(("#", "%", "//")) for row in texts]
+    numeric = [
+        any(f) and all(n for n, there in zip(row, f, strict=True) if there)
+        for row, f in zip(numbers, filled, strict=True)
+    ]
+    return Rows(
+        numeric=np.array(numeric, dtype=bool),
+        blank=np.array([not any(row) for row in filled], dtype=bool),
+        comment=np.array(marked, dtype=bool),
+        fields=lambda row: [field.lstrip("#% /") for field in texts[row]],
+    )
+
+
+def _text(cell: Any) -> str:
+    if cell is None or (isinstance(cell, float) and np.isnan(cell)):
+        return ""
+    if isinstance(cell, datetime.datetime):
+        return str(cell.isoformat(" "))
+    return str(cell).strip()
+
+
+def _source(cells: np.ndarray[Any, Any], layout: Layout, name: str, part: str) -> Source:
+    span = cells[layout.first : layout.last]
+    kept = [i for i, row in enumerate(span) if any(_text(cell) for cell in row)]
+
+    def place(row: int) -> str:
+        return f"row {layout.first + kept[row] + 1}" if row < len(kept) else f"sample {row + 1}"
+
+    def read(indices: Sequence[int]) -> list[Array]:
+        return [
+            np.array([_number(span[row, i], layout.headers[i], name, place(at))
+                      for at, row in enumerate(kept)])
+            for i in indices
+        ]  # fmt: skip
+
+    return Source(
+        name, layout.headers, read, place, part, units=layout.units,
+        step=stated_step(layout.notes),
+    )  # fmt: skip
+
+
+def _number(cell: Any, header: str, name: str, place: str) -> float:
+    if isinstance(cell, int | float):
+        return float(cell)
+    text = _text(cell)
+    found = value(text, "," if "," in text and "." not in text else ".")
+    if found is None:
+        raise InputError(header, expected="a number", found=shown(text), where=f"{name} {place}")
+    return found

@@ -1,0 +1,244 @@
+"""Which column is what, in which unit, how surely and why: for files that no campaign describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from discover.readers.columns import QUANTITIES, split_header
+from discover.readers.names import CANONICAL, LETTER, name_score
+from discover.readers.source import Source
+from discover.readers.units import check_unit, is_unit, to_si
+from models.checks import Array, InputError
+
+SURE, LIKELY, UNSURE = "sure", "likely", "unsure"
+_GUESSED = ("time", "force", "displacement", "velocity", "acceleration", "temperature")
+_NEEDED = ("time", "force", "displacement")
+_NEAR = 0.05  # of a score, within which two columns are equally likely
+_FEWEST = 16
+_SMALL_STROKE = 0.3  # below it metres, from it on millimetres: of what laboratories write
+_COARSE_STEP = 0.3  # from it on milliseconds
+
+
+@dataclass(frozen=True)
+class Guess:
+    """What a column is taken for."""
+
+    quantity: str
+    """Such as "force"."""
+    header: str
+    """The column's, as in the file."""
+    sure: str
+    """"sure", "likely" or "unsure"."""
+    why: str
+    """In words."""
+    unit: str
+    """Its unit, stated or guessed."""
+    unit_stated: bool
+    """Whether the file states the unit."""
+    others: tuple[str, ...] = ()
+    """Headers that are as likely."""
+
+
+@dataclass(frozen=True)
+class TableGuess:
+    """What a table is taken for."""
+
+    columns: Mapping[str, Guess]
+    """By quantity."""
+    lacks: tuple[str, ...]
+    """Quantities that a record needs and the table has not."""
+
+
+def guess_table(source: Source) -> TableGuess:
+    """Return which columns of a table are what.
+
+    A unit of the right kind, a name that laboratories use, and what the values do (time rises
+    evenly) each speak for a column; a unit of another kind speaks against it.
+
+    Parameters
+    ----------
+    source : Source
+        The table. Its columns are read where their values have to tell.
+
+    Examples
+    --------
+    >>> t = np.arange(20) / 100.0
+    >>> headers = ("Zeit [s]", "Weg [mm]", "F")
+    >>> table = Source("a.csv", headers, lambda i: [t, 1e3 * t**2, t][: len(i)])
+    >>> found = guess_table(table)
+    >>> [(q, g.header, g.sure) for q, g in found.columns.items()]
+    [('time', 'Zeit [s]', 'sure'), ('force', 'F', 'likely'), ('displacement', 'Weg [mm]', 'sure')]
+    """
+    columns: dict[str, Guess] = {}
+    taken: set[int] = set()
+    for quantity in _GUESSED:
+        guess = _column(source, quantity, taken)
+        if guess is not None:
+            columns[quantity] = guess
+            taken.add(source.headers.index(guess.header))
+    columns = {**_by_elimination(source, columns), **columns}
+    ordered = {q: columns[q] for q in _GUESSED if q in columns}
+    timed = source.step is not None
+    lacks = tuple(q for q in _NEEDED if q not in columns and not (q == "time" and timed))
+    return TableGuess(ordered, lacks)
+
+
+def _stated_unit(source: Source, index: int) -> str | None:
+    return split_header(source.headers[index])[1] or source.units.get(index)
+
+
+def _fits(unit: str, quantity: str) -> bool:
+    try:
+        check_unit(unit, QUANTITIES[quantity], name=quantity, where="")
+    except InputError:
+        return False
+    return True
+
+
+def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
+    """Return the likeliest column by name and unit, or None where none speaks for itself."""
+    scores: dict[int, tuple[float, float, bool]] = {}
+    for index, header in enumerate(source.headers):
+        unit = _stated_unit(source, index)
+        fitting = unit is not None and _fits(unit, quantity)
+        if index in taken or (unit is not None and is_unit(unit) and not fitting):
+            continue
+        name = name_score(split_header(header)[0], quantity)
+        if source.roles.get(quantity) == index:
+            name = CANONICAL
+        if name > 0.0 or (fitting and quantity in _NEEDED):
+            scores[index] = (name + fitting, name, fitting)
+    for index in sorted(scores, key=lambda i: -scores[i][0]):
+        if quantity == "time" and not _rises(source, index):
+            continue
+        score, name, fitting = scores[index]
+        near = [i for i in scores if i != index and score - scores[i][0] < _NEAR]
+        if quantity == "time":
+            near = []
+        return _guess(source, quantity, index, name=name, fitting=fitting, near=near)
+    return None
+
+
+def _guess(
+    source: Source, quantity: str, index: int, *, name: float, fitting: bool, near: list[int]
+) -> Guess:
+    header = source.headers[index]
+    reasons = []
+    if name:
+        reasons.append("its name is used for it" if name > LETTER else "its letter is used for it")
+    if fitting:
+        reasons.append(f"its unit is of {QUANTITIES[quantity]}")
+    sure = SURE if name == CANONICAL or (name and fitting) else LIKELY
+    others = tuple(source.headers[i] for i in near)
+    if others:
+        sure = UNSURE
+        reasons.append("others are as likely")
+    unit = _stated_unit(source, index)
+    stated = unit is not None and _fits(unit, quantity)
+    return Guess(
+        quantity,
+        header,
+        sure,
+        " and ".join(reasons),
+        unit if stated and unit is not None else _guessed_unit(source, index, quantity),
+        stated,
+        others,
+    )
+
+
+def _values(source: Source, index: int) -> Array | None:
+    """Return a column that is numbers throughout, or None."""
+    try:
+        (column,) = source.read([index])
+    except InputError:
+        return None
+    fine = column.size >= _FEWEST and np.isfinite(column).all()
+    return column if fine else None
+
+
+def _rises(source: Source, index: int) -> bool:
+    column = _values(source, index)
+    return column is not None and bool((np.diff(column) >= 0.0).all() and column[-1] > column[0])
+
+
+def _guessed_unit(source: Source, index: int, quantity: str) -> str:
+    """Return the unit in which the values would be of a usual size."""
+    column = _values(source, index)
+    if column is not None and quantity == "displacement":
+        return "m" if 0.5 * np.ptp(column) < _SMALL_STROKE else "mm"
+    if column is not None and quantity == "time":
+        return "s" if (column[-1] - column[0]) / (column.size - 1) < _COARSE_STEP else "ms"
+    return {"force": "N", "velocity": "m/s", "acceleration": "m/s^2", "temperature": "degC"}.get(
+        quantity, "s" if quantity == "time" else "m"
+    )
+
+
+def _by_elimination(source: Source, found: Mapping[str, Guess]) -> Mapping[str, Guess]:
+    """Return guesses for what nothing speaks for, of the columns that nothing else is.
+
+    Time is a column that rises evenly. Of two that are left displacement is the smoother.
+    """
+    used = {guess.header for guess in found.values()}
+    free = {
+        i: column
+        for i, header in enumerate(source.headers)
+        if header not in used
+        and _stated_unit(source, i) is None
+        and not any(name_score(split_header(header)[0], q) for q in _GUESSED)
+        and (column := _values(source, i)) is not None
+        and np.ptp(column) > 0.0
+    }
+    result: dict[str, Guess] = {}
+    if "time" not in found and source.step is None:
+        even = [i for i, column in free.items() if _even(column)]
+        if even:
+            result["time"] = _eliminated(source, even[0], "time", "it alone rises evenly")
+            del free[even[0]]
+    wanted = [q for q in ("displacement", "force") if q not in found]
+    smooth = sorted(free, key=lambda i: _roughness(free[i]))
+    if 0 < len(wanted) <= len(smooth):
+        ends = {"displacement": smooth[0], "force": smooth[-1]}
+        for quantity in wanted:
+            why = "of what is left it is the " + ("smoother" if quantity[0] == "d" else "rougher")
+            result[quantity] = _eliminated(source, ends[quantity], quantity, why)
+    return result
+
+
+def _eliminated(source: Source, index: int, quantity: str, why: str) -> Guess:
+    unit = _guessed_unit(source, index, quantity)
+    sure = LIKELY if quantity == "time" else UNSURE
+    return Guess(quantity, source.headers[index], sure, why, unit, unit_stated=False)
+
+
+def _even(column: Array) -> bool:
+    steps = np.diff(column)
+    return bool(steps.min() > 0.0 and steps.max() < 3.0 * np.median(steps))
+
+
+def _roughness(column: Array) -> float:
+    return float(np.sqrt(np.mean(np.diff(column, 2) ** 2)) / np.ptp(column))
+
+
+def in_si(guess: Guess, values: Array) -> Array:
+    """Return a guessed column's values in SI."""
+    return to_si(values, guess.unit, QUANTITIES[guess.quantity])
+
+
+def listed(table: TableGuess) -> Iterator[str]:
+    """Yield in words what each column is taken for.
+
+    Examples
+    --------
+    >>> force = Guess("force", "F", "likely", "its letter is used for it", "N", unit_stated=False)
+    >>> list(listed(TableGuess({"force": force}, ())))
+    ["force is column 'F' (likely: its letter is used for it), in N (guessed)"]
+    """
+    for guess in table.columns.values():
+        stated = "" if guess.unit_stated else " (guessed)"
+        yield (
+            f"{guess.quantity} is column {guess.header!r} ({guess.sure}: {guess.why}), in"
+            f" {guess.unit}{stated}"
+        )

@@ -1,0 +1,110 @@
+"""HDF5, and MATLAB 7.3 files that are HDF5, as a source of columns (h5py)."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from discover.readers.content import content_error, optional_package
+from discover.readers.sampling_note import stated_step
+from discover.readers.source import MOST_VALUES, Book
+from discover.readers.tree import Leaf, tree_book
+from models.checks import InputError
+
+_MAGIC = b"\x89HDF\r\n\x1a\n"
+_DEEPEST = 16
+_UNIT_NAMES = ("units", "unit", "Units", "Unit", "UNIT", "unit_string")
+
+
+def is_hdf5(data: bytes) -> bool:
+    """Return whether a file is HDF5, after a block of a user's own (MATLAB's is 512 bytes) too."""
+    return any(data[at : at + 8] == _MAGIC for at in (0, 512, 1024, 2048))
+
+
+def open_hdf5(data: bytes, name: str, *, joint: str = "/") -> Book:
+    """Open an HDF5 file; groups hold tests, data sets are columns.
+
+    An attribute ``units`` of a data set is its unit; a scalar or an attribute may state the
+    sampling rate. What lies in other files is not followed.
+
+    Raises
+    ------
+    InputError
+        Where it is not such a file, holds no numeric vector, or h5py is missing.
+    """
+    h5py = optional_package("h5py", extra="hdf5", name=name)
+    try:
+        with h5py.File(io.BytesIO(data), "r") as file:
+            leaves = list(_Walk(h5py, file).leaves(file, ()))
+    except InputError:
+        raise
+    except Exception as error:  # the library lets errors of many kinds through
+        raise content_error("an HDF5 file", error, name) from None
+    return tree_book(name, leaves, joint=joint)
+
+
+class _Walk:
+    """One walk over a file that meets every object once, however it is linked."""
+
+    def __init__(self, h5py: Any, file: Any) -> None:
+        self.h5py = h5py
+        self.file = file
+        self.met = {h5py.h5o.get_info(file.id).addr}
+
+    def leaves(self, group: Any, path: tuple[str, ...]) -> Iterator[Leaf]:
+        """Return what lies in a group and below it."""
+        for key, value in _scalars(group):
+            yield Leaf((*path, key), value)
+        for key in group:
+            # MATLAB's store of references is reached through them; a link may lead elsewhere.
+            hard = isinstance(group.get(key, getlink=True), self.h5py.HardLink)
+            if hard and not key.startswith("#"):
+                yield from self._item(group[key], (*path, key))
+
+    def _item(self, item: Any, path: tuple[str, ...]) -> Iterator[Leaf]:
+        address = self.h5py.h5o.get_info(item.id).addr
+        if address in self.met or len(path) > _DEEPEST:
+            return
+        self.met.add(address)
+        if isinstance(item, self.h5py.Group):
+            yield from self.leaves(item, path)
+        elif isinstance(item, self.h5py.Dataset) and not (item.external or item.is_virtual):
+            yield from self._values(item, path)
+
+    def _values(self, item: Any, path: tuple[str, ...]) -> Iterator[Leaf]:
+        kind = item.attrs.get("MATLAB_class")
+        if item.shape is None or item.size > MOST_VALUES or kind == b"char":
+            return
+        if self.h5py.check_dtype(ref=item.dtype) is not None:  # cells, members of a structure
+            for index, reference in enumerate(np.ravel(item[()]), start=1):
+                if reference:
+                    own = (*path[:-1], f"{path[-1]}({index})")
+                    yield from self._item(self.file[reference], own)
+            return
+        step = stated_step([(key, repr(float(value.ravel()[0]))) for key, value in _scalars(item)])
+        if item.dtype.names:  # a table, as pandas and PyTables write it
+            for field in item.dtype.names:
+                yield Leaf((*path, field), item[field], step=step)
+            return
+        yield Leaf(path, item[()], unit=_unit(item), step=step)
+
+
+def _scalars(item: Any) -> Iterator[tuple[str, Any]]:
+    """Return the attributes that are single numbers."""
+    for key, value in item.attrs.items():
+        array = np.asarray(value)
+        if array.size == 1 and array.dtype.kind in "iuf":
+            yield key, array
+
+
+def _unit(item: Any) -> str:
+    for key in _UNIT_NAMES:
+        value = item.attrs.get(key)
+        if isinstance(value, bytes):
+            value = value.decode("utf-8", "replace")
+        if isinstance(value, str):
+            return value.strip()
+    return ""

@@ -1,0 +1,211 @@
+"""Where the tables of a text file or a sheet lie: preamble, header, unit row, samples, footer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from discover.readers.numerals import clock_seconds
+from discover.readers.units import is_unit
+
+Mask = NDArray[np.bool_]
+
+_LONGEST_PREAMBLE = 2000  # rows before the samples that are looked at
+_UNIT_MARKS = ("[", "(")
+
+
+@dataclass(frozen=True)
+class Rows:
+    """A text's lines or a sheet's rows."""
+
+    numeric: Mask
+    """(N,) where a row holds numbers and nothing else."""
+    blank: Mask
+    """(N,) where it holds nothing."""
+    comment: Mask
+    """(N,) where it is marked as a comment."""
+    fields: Callable[[int], list[str]]
+    """A row's fields as text; of a comment without its mark."""
+
+    @property
+    def count(self) -> int:
+        """Number of rows."""
+        return int(self.numeric.size)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """One table."""
+
+    headers: tuple[str, ...]
+    """As written; "column 1" and so on where there is no header."""
+    units: dict[int, str]
+    """By column, from a row of units below the header."""
+    header: int | None
+    """Row of the header; None where there is none."""
+    first: int
+    """Row of the first sample."""
+    last: int
+    """One past the row of the last sample."""
+    title: str
+    """What stands alone above the header, "" for none."""
+    notes: tuple[tuple[str, str], ...]
+    """Names and values of the preamble."""
+
+
+def find_tables(rows: Rows) -> list[Layout]:
+    """Return the tables in order: each a run of samples with what stands above it.
+
+    A row of samples begins with a number and has two numbers or more, or is one number; the next
+    row has as many fields. What stands above is a header of as many texts, perhaps with a row of
+    units below it, or a comment that is such a header; rows further up are the preamble.
+    """
+    tables: list[Layout] = []
+    begin = 0
+    while begin < rows.count:
+        first = _first_sample(rows, begin)
+        if first is None:
+            break
+        header, units, start = _heading(rows, begin, first)
+        last = _end(rows, start if header is None else max(start, header + 1))
+        tables.append(_layout(rows, begin, header, units, start, last))
+        begin = last
+    return tables
+
+
+def _trimmed(fields: Sequence[str]) -> list[str]:
+    kept = [field.strip() for field in fields]
+    while kept and not kept[-1]:
+        kept.pop()
+    return kept
+
+
+def _number_like(field: str) -> bool:
+    try:
+        float(field.replace(",", "."))
+    except ValueError:
+        return clock_seconds(field) is not None
+    return True
+
+
+def _is_sample(rows: Rows, row: int) -> bool:
+    if rows.blank[row] or rows.comment[row]:
+        return False
+    fields = [f for f in _trimmed(rows.fields(row)) if f]
+    if not fields or not _number_like(fields[0]):
+        return False
+    return len(fields) == 1 or sum(_number_like(f) for f in fields) > 1
+
+
+def _filled(rows: Rows, begin: int, end: int) -> Iterator[int]:
+    """Yield the rows that hold something and are no comment."""
+    return (row for row in range(begin, end) if not (rows.blank[row] or rows.comment[row]))
+
+
+def _first_sample(rows: Rows, begin: int) -> int | None:
+    end = min(rows.count, begin + _LONGEST_PREAMBLE)
+    for row in _filled(rows, begin, end):
+        if not _is_sample(rows, row):
+            continue
+        after = next(_filled(rows, row + 1, rows.count), None)
+        if after is None:
+            return row
+        same = len(_trimmed(rows.fields(after))) == len(_trimmed(rows.fields(row)))
+        if same and _is_sample(rows, after):
+            return row
+    return None
+
+
+def _is_header(fields: Sequence[str], width: int) -> bool:
+    named = [f for f in fields if f]
+    if not named or any(_number_like(f) for f in named):
+        return False
+    return len(fields) == width or len(named) > 1
+
+
+def _units(fields: Sequence[str], width: int) -> dict[int, str] | None:
+    """Return a row's units by column, or None where it is no row of units."""
+    named = {i: f for i, f in enumerate(fields) if f and f != "-"}
+    if len(fields) > width or len(named) < min(2, width):
+        return None
+    plain = {i: f[1:-1].strip() if f[0] in _UNIT_MARKS else f for i, f in named.items()}
+    bare = [plain[i] for i, f in named.items() if f[0] not in _UNIT_MARKS]
+    if not all(is_unit(text) for text in bare):
+        return None
+    return {i: text for i, text in plain.items() if text}
+
+
+def _heading(rows: Rows, begin: int, first: int) -> tuple[int | None, dict[int, str], int]:
+    """Return the header's row, the units by column, and the row of the first sample."""
+    width = len(_trimmed(rows.fields(first)))
+    above = list(_filled(rows, begin, first))[::-1]
+    texts = [_trimmed(rows.fields(row)) for row in above[:2]]
+    if len(texts) > 1 and _is_header(texts[1], width):
+        units = _units(texts[0], width)
+        if units is not None:
+            return above[1], units, first
+    if texts and _is_header(texts[0], width):
+        return above[0], {}, first
+    marked = [row for row in range(begin, first) if rows.comment[row] and not rows.blank[row]]
+    for row in marked[::-1][:2]:
+        fields = _trimmed(rows.fields(row))
+        if len(fields) == width and _is_header(fields, width):
+            return row, {}, first
+    if above:  # rows that are damaged follow the header: they are for reading to complain of
+        top = _trimmed(rows.fields(above[-1]))
+        damaged = len(top) == width or all(_is_sample(rows, row) for row in above[:-1])
+        if damaged and _is_header(top, width):
+            return above[-1], {}, above[-1] + 1
+    return None, {}, first
+
+
+def _end(rows: Rows, first: int) -> int:
+    """Return one past the last sample: where a footer or the next table's preamble begins."""
+    odd = (np.flatnonzero(~rows.numeric[first:]) + first).tolist()
+    for row in odd:
+        if rows.blank[row] or rows.comment[row] or _is_sample(rows, row):
+            continue
+        after = _first_sample(rows, row)
+        if after is None:
+            texts = [_trimmed(rows.fields(r)) for r in _filled(rows, row, rows.count)]
+            if not any(_number_like(f) for text in texts for f in text if f):
+                return row
+        elif _heading(rows, row, after)[0] is not None:
+            return row
+    return rows.count
+
+
+def _layout(
+    rows: Rows,
+    begin: int,
+    header: int | None,
+    units: dict[int, str],
+    first: int,
+    last: int,
+) -> Layout:
+    width = len(rows.fields(first)) if header is None else len(rows.fields(header))
+    if header is None:
+        names = tuple(f"column {i + 1}" for i in range(width))
+    else:
+        names = tuple(field.strip() for field in rows.fields(header))
+    top = first if header is None else header
+    preamble = [_trimmed(rows.fields(r)) for r in range(begin, top) if not rows.blank[r]]
+    alone = [f[0] for f in preamble[-1:] if len([x for x in f if x]) == 1 and f[0]]
+    title = alone[0] if alone and not set(alone[0]) & set(":=") else ""
+    return Layout(names, units, header, first, last, title[:80], tuple(_notes(preamble)))
+
+
+def _notes(preamble: Sequence[Sequence[str]]) -> Iterator[tuple[str, str]]:
+    for fields in preamble:
+        named = [f for f in fields if f]
+        if len(named) > 1:
+            yield named[0], named[1]
+            yield named[0], " ".join(named[1:3])
+        joined = " ".join(named)
+        for mark in ":=":
+            name, found, value = joined.partition(mark)
+            if found:
+                yield name, value.strip()

@@ -1,0 +1,57 @@
+"""Names by which laboratories call what a record needs, in English, German and French."""
+
+from __future__ import annotations
+
+import re
+
+_WORDS = {
+    "time": "time t zeit temps timestamp elapsed seconds sec laufzeit messzeit testzeit x_value",
+    "displacement": "displacement disp deflection stroke position pos x travel lvdt weg hub"
+    " auslenkung verschiebung kolbenweg deplacement course stellung laser crosshead ram",
+    "force": "force f load loadcell kraft last effort fx fy fz lc kraftaufnehmer kolbenkraft",
+    "velocity": "velocity vel v speed geschwindigkeit vitesse",
+    "acceleration": "acceleration accel acc a beschleunigung",
+    "temperature": "temperature temp temperatur oil",
+}
+_COMMANDS = set(
+    "command cmd commanded setpoint soll sollwert target reference ref demand consigne".split()
+)
+_PLAIN = str.maketrans("éèêàäöüçâîô", "eeeaaoucaio")
+_SPLIT = re.compile(r"[^a-z_]+|_(?!value)")
+_LONG = 4
+_LONGEST = 80
+
+CANONICAL, WORD, PART, LETTER = 1.0, 0.8, 0.6, 0.5
+"""How much a name says: it is the quantity's own, one of its words, holds one, or is a letter."""
+
+
+def name_score(header: str, quantity: str) -> float:
+    """Return how surely a header's name is that of a quantity, from 0 to 1.
+
+    A name that is of a command, as "displacement setpoint", counts for half.
+
+    Examples
+    --------
+    >>> name_score("Force", "force"), name_score("Kolbenkraft 2", "force")
+    (1.0, 0.8)
+    >>> name_score("Weg_soll", "displacement"), name_score("x", "displacement")
+    (0.4, 0.5)
+    >>> name_score("Voltage", "force")
+    0.0
+    """
+    plain = header[:_LONGEST].strip().lower().translate(_PLAIN)
+    plain = plain.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
+    if plain == quantity:
+        return CANONICAL
+    tokens = [token for token in _SPLIT.split(plain) if token]
+    words = _WORDS[quantity].split()
+    score = 0.0
+    for token in tokens:
+        if token in words:
+            score = max(score, LETTER if len(token) == 1 else WORD)
+        elif any(
+            len(word) >= _LONG and (token.startswith(word) or token.endswith(word))
+            for word in words
+        ):
+            score = max(score, PART)
+    return 0.5 * score if _COMMANDS & set(tokens) else score

@@ -1,0 +1,72 @@
+"""``campaign.toml`` as text, with why beside what was guessed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+
+from discover.readers.entries import Entry
+from discover.readers.guess import TableGuess
+from models.checks import printable
+
+
+def campaign_text(
+    *,
+    title: str,
+    device: str,
+    columns: Mapping[str, str],
+    units: Mapping[str, str],
+    tests: Sequence[tuple[Entry, TableGuess]],
+) -> str:
+    """Return a ``campaign.toml``.
+
+    Parameters
+    ----------
+    title, device : str
+        Of the campaign; a preset, "" for none.
+    columns, units : mapping
+        ``[columns]`` and ``[units]``.
+    tests : sequence of (Entry, TableGuess)
+        Its records, and what their columns are taken for.
+    """
+    lines = [f"title = {quoted(title)}", ""]
+    if device:
+        lines += ["[device]", f"preset = {quoted(device)}", ""]
+    if columns:
+        lines.append("[columns]")
+        for quantity, header in columns.items():
+            own = next(g.columns[quantity] for _, g in tests if quantity in g.columns)
+            lines.append(f"{quantity} = {quoted(header)}  # {own.sure}: {printable(own.why)}")
+        lines.append("")
+    if units:
+        lines.append("[units]")
+        lines += [f"{q} = {quoted(u)}  # no file states it" for q, u in units.items()]
+        lines.append("")
+    for entry, _ in tests:
+        lines += [*_entry_lines(entry), ""]
+    return "\n".join(lines).rstrip("\n") + "\n"
+
+
+def _entry_lines(entry: Entry) -> list[str]:
+    lines = ["[[records]]", f"file = {quoted(entry.file)}"]
+    if entry.part is not None:
+        lines.append(f"{entry.key} = {quoted(str(entry.part))}")
+    if entry.channel:
+        inside = ", ".join(f"{q} = {quoted(h)}" for q, h in entry.channel.items())
+        lines.append(f"channel = {{ {inside} }}")
+    if entry.step is not None:
+        lines.append(f'sampling_rate = "{1.0 / entry.step:.12g} Hz"')
+    if entry.held_out:
+        lines.append("held_out = true")
+    return lines
+
+
+def quoted(text: str) -> str:
+    r"""Return a TOML basic string; JSON's escapes are among TOML's.
+
+    Examples
+    --------
+    >>> quoted('a "b"')
+    '"a \\"b\\""'
+    """
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

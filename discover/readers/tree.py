@@ -1,0 +1,174 @@
+"""Files that are trees of named vectors: MATLAB, HDF5, numpy archives, TDMS, MDF."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from discover.readers.sampling_note import stated_step
+from discover.readers.source import MOST_VALUES, Book, Source, column_reader
+from models.checks import Array, InputError
+
+_WIDEST = 64  # columns of a matrix that may be channels
+_NESTED = (Mapping, list, np.ndarray)
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """One value of a tree."""
+
+    path: tuple[str, ...]
+    """Names of the groups that hold it, then its own."""
+    value: Any
+    """An array, or what numpy makes one of."""
+    unit: str = ""
+    """As the file states it beside the value; "" where it does not."""
+    step: float | None = None
+    """s, the sampling interval that the file states beside the value."""
+    start: float = 0.0
+    """s, the time of the first sample that goes with `step`."""
+    role: str = ""
+    """The quantity, where the format itself tells it; "" where it does not."""
+
+
+def tree_book(name: str, leaves: list[Leaf], *, joint: str = "/") -> Book:
+    """Return the book of a tree: all of it, and every group that holds vectors.
+
+    Vectors count as columns; a matrix of at most 64 columns gives one column each, named as
+    MATLAB would: ``data(:,1)``. A scalar may state the sampling rate. Anything else is left out.
+
+    Parameters
+    ----------
+    name : str
+        File, for messages.
+    leaves : list of Leaf
+        In the file's order.
+    joint : str
+        Between the names of a path.
+
+    Raises
+    ------
+    InputError
+        Where it holds no numeric vector.
+    """
+    vectors, notes = _vectors(leaves)
+    if not vectors:
+        raise InputError("content", expected="numeric vectors", found="none", where=name)
+    groups: dict[tuple[str, ...], list[Leaf]] = {}
+    for leaf in vectors:
+        groups.setdefault(leaf.path[:-1], []).append(leaf)
+    parts = []
+    for path, held in groups.items():
+        part = joint.join(path)
+        inside = name if len(groups) == 1 or not path else f"{name} [{part}]"
+        below = () if len(groups) == 1 else path
+        parts.append(_source(inside, held, _step_of(path, notes), joint, below=below, part=part))
+    whole = None
+    if len(parts) > 1:
+        whole = _source(name, vectors, _step_of((), notes), joint, below=(), part="")
+    return Book(name, tuple(parts), whole=whole)
+
+
+def plain_leaves(content: Mapping[str, Any], path: tuple[str, ...] = ()) -> Iterator[Leaf]:
+    """Return the leaves of nested dictionaries and lists, list members counted from 1.
+
+    Examples
+    --------
+    >>> [leaf.path for leaf in plain_leaves({"runs": [{"t": 1}, {"t": 2}], "fs": 3})]
+    [('runs(1)', 't'), ('runs(2)', 't'), ('fs',)]
+    """
+    for key, value in content.items():
+        own = key.strip()
+        members = _members(value)
+        if isinstance(value, Mapping):
+            yield from plain_leaves(value, (*path, own))
+        elif members:
+            yield from plain_leaves({f"{own}({i})": m for i, m in enumerate(members, 1)}, path)
+        else:
+            yield Leaf((*path, own), value)
+
+
+def _members(value: Any) -> list[Any]:
+    """Return what a list holds where that is not plain numbers; nothing for any other value."""
+    if isinstance(value, np.ndarray) and value.dtype == object:
+        value = list(value.ravel())
+    nested = isinstance(value, list) and any(isinstance(m, _NESTED) for m in value)
+    return list(value) if nested else []
+
+
+def _vectors(leaves: list[Leaf]) -> tuple[list[Leaf], dict[tuple[str, ...], float]]:
+    """Return every column as a leaf of its own, and the steps that scalars state by group."""
+    vectors: list[Leaf] = []
+    notes: dict[tuple[str, ...], float] = {}
+    for leaf in leaves:
+        array = _numeric(leaf.value)
+        if array is None:
+            continue
+        if array.size == 1:
+            step = stated_step([(leaf.path[-1], f"{float(array.ravel()[0])!r} {leaf.unit}")])
+            if step is not None:
+                notes.setdefault(leaf.path[:-1], step)
+            continue
+        for own, column in _columns(leaf.path[-1], array):
+            vectors.append(
+                Leaf((*leaf.path[:-1], own), column, leaf.unit, leaf.step, leaf.start, leaf.role)
+            )
+    return vectors, notes
+
+
+def _numeric(value: Any) -> np.ndarray[Any, Any] | None:
+    try:
+        array = np.asarray(value)
+    except ValueError:  # lists of unequal lengths
+        return None
+    if array.dtype.kind not in "iufb" or not 0 < array.size <= MOST_VALUES:
+        return None
+    return array
+
+
+def _columns(name: str, array: np.ndarray[Any, Any]) -> Iterator[tuple[str, Array]]:
+    vector = array.squeeze()
+    if vector.ndim == 1:
+        yield name, vector
+    elif vector.ndim == 2:
+        tall = vector if vector.shape[0] >= vector.shape[1] else vector.T
+        if tall.shape[1] <= _WIDEST:
+            for index in range(tall.shape[1]):
+                yield f"{name}(:,{index + 1})", tall[:, index]
+
+
+def _step_of(path: tuple[str, ...], notes: Mapping[tuple[str, ...], float]) -> float | None:
+    """Return the step that the group or one above it states, else the only one in the file."""
+    above = (path[:count] for count in range(len(path), -1, -1))
+    found = next((notes[p] for p in above if p in notes), None)
+    return next(iter(notes.values())) if found is None and len(set(notes.values())) == 1 else found
+
+
+def _source(
+    name: str,
+    leaves: list[Leaf],
+    step: float | None,
+    joint: str,
+    *,
+    below: tuple[str, ...],
+    part: str,
+) -> Source:
+    """Return some leaves as a table, a step stated beside them before one of their group."""
+    headers = tuple(joint.join(leaf.path[len(below) :]) for leaf in leaves)
+    waves = [leaf for leaf in leaves if leaf.step is not None]
+    if waves:
+        step = waves[0].step if all(w.step == waves[0].step for w in waves) else None
+    named = [leaf.role for leaf in leaves]
+    return Source(
+        name,
+        headers,
+        column_reader(name, headers, [leaf.value for leaf in leaves]),
+        part=part,
+        units={i: leaf.unit for i, leaf in enumerate(leaves) if leaf.unit},
+        roles={role: named.index(role) for role in named if role and named.count(role) == 1},
+        step=step,
+        start=waves[0].start if waves else 0.0,
+    )

@@ -1,0 +1,391 @@
+"""Records as instruments write them, read by what ``campaign.toml`` says of them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import lvm_read
+import numpy as np
+import pytest
+
+from discover.readers import read_campaign
+from discover.records import Campaign
+from models.checks import InputError
+from tests.discover.readers import instruments
+from tests.discover.readers.instruments import LOAD, STROKE, TIME
+
+FORCE_AND_STROKE = '[columns]\nforce = "Dev1/ai0"\ndisplacement = "LVDT"\n'
+
+
+def _campaign(folder: Path, toml: str) -> Campaign:
+    (folder / "campaign.toml").write_text(toml)
+    return read_campaign(folder)
+
+
+def _check(found: Campaign, *factors: float, rtol: float = 1e-9) -> None:
+    """The records are the test of `instruments` times the factors, in SI."""
+    assert len(found.records) == len(factors)
+    for record, factor in zip(found.records, factors, strict=True):
+        np.testing.assert_allclose(record.time, TIME, atol=1e-9)
+        np.testing.assert_allclose(
+            record.displacement, 1e-3 * factor * STROKE, rtol=rtol, atol=1e-9
+        )
+        np.testing.assert_allclose(record.force, 1e3 * factor * LOAD, rtol=rtol, atol=1e-5)
+    assert [f.text for f in found.findings if f.level == "warning"] == []
+
+
+@pytest.mark.parametrize("waveform", [True, False])
+def test_tdms_groups_are_tests_and_channels_carry_their_units(
+    tmp_path: Path, waveform: bool
+) -> None:
+    content = instruments.tdms({"run 1": 1.0, "run 2": 0.5}, waveform=waveform)
+    (tmp_path / "a.tdms").write_bytes(content)
+    each = FORCE_AND_STROKE + '[[records]]\nfile = "a.tdms"\ngroup = "*"\n'
+    found = _campaign(tmp_path, each)
+    _check(found, 1.0, 0.5)
+    assert [r.file for r in found.records] == ["a.tdms [run 1]", "a.tdms [run 2]"]
+    told = "it has no time column: the times are made of its 200 Hz"
+    assert any(told in f.text for f in found.findings) == waveform
+    second = FORCE_AND_STROKE + '[[records]]\nfile = "a.tdms"\ngroup = {}\n'
+    for name in ('"run 2"', "2"):
+        _check(_campaign(tmp_path, second.format(name)), 0.5)
+    with pytest.raises(InputError, match=r"group must be given .*'run 1', 'run 2', or as \"\*\""):
+        _campaign(tmp_path, FORCE_AND_STROKE + '[[records]]\nfile = "a.tdms"\n')
+    with pytest.raises(InputError, match=r"group must be one of 'run 1', 'run 2', got 'run 3' \(d"):
+        _campaign(tmp_path, second.format('"run 3"'))
+    with pytest.raises(InputError, match="key 'sheet' must be 'group' for a file of this kind"):
+        _campaign(tmp_path, second.replace("group", "sheet").format('"run 1"'))
+    with pytest.raises(InputError, match="group must be from 1 to 2, got 3"):
+        _campaign(tmp_path, second.format("3"))
+
+
+def test_one_group_need_not_be_named(tmp_path: Path) -> None:
+    (tmp_path / "a.tdms").write_bytes(instruments.tdms({"all": 1.0}))
+    found = _campaign(tmp_path, FORCE_AND_STROKE + '[[records]]\nfile = "a.tdms"\n')
+    _check(found, 1.0)
+    assert found.records[0].file == "a.tdms"
+
+
+def test_several_channels_of_one_table_are_several_records(tmp_path: Path) -> None:
+    (tmp_path / "a.tdms").write_bytes(instruments.tdms({"all": 1.0}))
+    one = '[[records]]\nfile = "a.tdms"\nchannel = {{ force = "{}", displacement = "LVDT" }}\n'
+    found = _campaign(tmp_path, one.format("Dev1/ai0"))
+    _check(found, 1.0)
+    with pytest.raises(InputError, match="column 'ai9' for force must be among the headers"):
+        _campaign(tmp_path, one.format("ai9"))
+    two = '[columns]\ndisplacement = "LVDT"\n[[records]]\nfile = "a.tdms"\nchannel = "Dev1/ai0"\n'
+    assert _campaign(tmp_path, two).records[0].file == "a.tdms"
+    table = np.column_stack([TIME, STROKE, LOAD, 2.0 * LOAD])
+    header = "time [s],displacement [mm],Load 1 [kN],Load 2 [kN]"
+    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header=header, comments="")
+    both = "".join(f'[[records]]\nfile = "a.csv"\nchannel = "Load {i}"\n' for i in (1, 2))
+    first, second = _campaign(tmp_path, both).records
+    assert (first.file, second.file) == ("a.csv [Load 1]", "a.csv [Load 2]")
+    np.testing.assert_allclose(second.force, 2.0 * first.force)
+    with pytest.raises(InputError, match="file must be listed once, got 'a.csv .Load 1.' again"):
+        _campaign(tmp_path, both.replace("Load 2", "Load 1"))
+
+
+def test_a_workbook_with_cover_preamble_and_unit_row(tmp_path: Path) -> None:
+    instruments.workbook(tmp_path / "a.xlsx")
+    found = _campaign(tmp_path, '[[records]]\nfile = "a.xlsx"\nsheet = "Test *"\n')
+    _check(found, 1.0, 0.5)
+    cells = '[[records]]\nfile = "a.xlsx"\nsheet = "Test 1"\nrange = "A4:C1205"\n'
+    _check(_campaign(tmp_path, cells), 1.0)
+    with pytest.raises(InputError, match=r"sheet must be given .* 'Test 1', 'Test 2'"):
+        _campaign(tmp_path, '[[records]]\nfile = "a.xlsx"\n')
+    with pytest.raises(InputError, match="range must be the cells of one table"):
+        _campaign(tmp_path, cells.replace("A4:C1205", "A1:B3"))
+
+
+def test_a_wrong_cell_is_named(tmp_path: Path) -> None:
+    import openpyxl
+
+    instruments.workbook(tmp_path / "a.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    book["Test 1"]["C9"] = "overload"
+    book.save(tmp_path / "a.xlsx")
+    with pytest.raises(
+        InputError, match=r"\[Test 1\] row 9: Force must be a number, got 'overload'"
+    ):
+        _campaign(tmp_path, '[[records]]\nfile = "a.xlsx"\nsheet = "Test 1"\n')
+
+
+def test_matlab_7_3_structures(tmp_path: Path) -> None:
+    instruments.matlab_73(tmp_path / "a.mat")
+    toml = (
+        '[columns]\nforce = "F"\ndisplacement = "x"\n[units]\nforce = "kN"\ndisplacement = "mm"\n'
+        '[[records]]\nfile = "a.mat"\ngroup = "run*"\n'
+    )
+    found = _campaign(tmp_path, toml)
+    _check(found, 1.0, 0.5)
+    assert [r.file for r in found.records] == ["a.mat [run1]", "a.mat [run2]"]
+
+
+def test_hdf5_groups_with_units_and_rate_as_attributes(tmp_path: Path) -> None:
+    instruments.hdf5(tmp_path / "a.h5")
+    found = _campaign(tmp_path, '[[records]]\nfile = "a.h5"\ngroup = "*"\n')
+    _check(found, 1.0, 0.5, rtol=1e-6)
+
+
+@pytest.mark.parametrize("even", [True, False])
+def test_universal_files_say_themselves_what_is_force(tmp_path: Path, even: bool) -> None:
+    instruments.uff58(tmp_path / "a.uff", even=even)
+    _check(_campaign(tmp_path, '[[records]]\nfile = "a.uff"\n'), 1.0, rtol=1e-5)
+
+
+def test_mdf_channel_groups(tmp_path: Path) -> None:
+    instruments.mdf4(tmp_path / "a.mf4")
+    names = '[columns]\nforce = "Kraft"\ndisplacement = "Weg"\n'
+    toml = names + '[[records]]\nfile = "a.mf4"\ngroup = "*"\n'
+    found = _campaign(tmp_path, toml)
+    _check(found, 1.0, 0.5)
+    assert found.records[1].file == "a.mf4 [fast]"
+
+
+LVM = """\
+LabVIEW Measurement\t
+Writer_Version\t2
+Reader_Version\t2
+Separator\tTab
+Decimal_Separator\t{decimal}
+Multi_Headings\t{many}
+X_Columns\t{style}
+Time_Pref\tRelative
+Operator\tmeier
+Date\t2024/05/17
+Time\t12:00:07,284627
+***End_of_Header***\t
+"""
+SEGMENT = """\
+\t
+Channels\t2{gap}\t\t
+Samples\t1200\t{gap}1200\t
+Date\t2024/05/17\t{gap}2024/05/17\t
+Time\t12:00:07,483999\t{gap}12:00:07,483999\t
+Y_Unit_Label\tmm\t{gap}kN\t
+X_Dimension\tTime\t{gap}Time\t
+X0\t0.0000000000000000E+0\t{gap}0.0000000000000000E+0\t
+Delta_X\t0.005000\t{gap}0.005000\t
+***End_of_Header***\t\t{gap}\t
+"""
+
+
+def _lvm(style: str, *factors: float, decimal: str = ".") -> str:
+    """The test as LabVIEW's Write To Measurement File writes it, by NI's specification."""
+    text = LVM.format(style=style, decimal=decimal, many="Yes" if len(factors) > 1 else "No")
+    for factor in factors:
+        text += SEGMENT.format(gap="\t" if style == "Multi" else "")
+        second = "X_Value\t" if style == "Multi" else ""
+        text += f"X_Value\tWeg\t{second}Kraft\tComment\n"
+        for t, x, force in zip(TIME, factor * STROKE, factor * LOAD, strict=True):
+            first = "" if style == "No" else f"{t:.6f}"
+            second = f"{t:.6f}\t" if style == "Multi" else ""
+            text += f"{first}\t{x:.6f}\t{second}{force:.9f}\n".replace(".", decimal)
+    return text
+
+
+NAMED = '[columns]\ndisplacement = "Weg"\nforce = "Kraft"\n'
+
+
+@pytest.mark.parametrize("style", ["No", "One", "Multi"])
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_labview_files(tmp_path: Path, style: str, decimal: str) -> None:
+    for name in ("a.lvm", "a.txt"):
+        (tmp_path / name).write_text(_lvm(style, 1.0, decimal=decimal), newline="\r\n")
+        _check(_campaign(tmp_path, NAMED + f'[[records]]\nfile = "{name}"\n'), 1.0, rtol=2e-4)
+
+
+def test_labview_segments_are_tests_and_a_library_reads_the_same(tmp_path: Path) -> None:
+    (tmp_path / "a.lvm").write_text(_lvm("One", 1.0, 0.5))
+    found = _campaign(tmp_path, NAMED + '[[records]]\nfile = "a.lvm"\ngroup = "*"\n')
+    _check(found, 1.0, 0.5, rtol=2e-4)
+    oracle = lvm_read.read(str(tmp_path / "a.lvm"), read_from_pickle=False, dump_file=False)
+    for index, record in enumerate(found.records):
+        data = oracle[index]["data"]
+        np.testing.assert_allclose(record.displacement, 1e-3 * data[:, 1], rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(record.force, 1e3 * data[:, 2], rtol=1e-12, atol=1e-12)
+
+
+def _table(
+    header: str, *, sep: str, decimal: str = ".", end: str = "\n", timed: bool = True
+) -> str:
+    columns = [*([TIME] if timed else []), STROKE, LOAD]
+    lines = [sep.join(f"{v:.9f}" for v in row) for row in zip(*columns, strict=True)]
+    return header + end + end.join(lines).replace(".", decimal) + end
+
+
+ONE = '[[records]]\nfile = "a.csv"\n'
+TEXTS = {
+    "preamble and unit row, German": (
+        "Prüfbericht;Dämpfer 7;;\nPrüfer;Meier;;\nDatum;17.05.2024;;\nProben;1200;3;\n\n"
+        + _table("Zeit;Weg;Kraft\ns;mm;kN", sep=";", decimal=",", end="\n"),
+        '[columns]\ntime = "Zeit"\ndisplacement = "Weg"\nforce = "Kraft"\n' + ONE,
+    ),
+    "units in brackets below, French": (
+        "Essai : amortisseur\nOpérateur : Léa\n"
+        + _table("Temps\tDéplacement\tEffort\n[s]\t[mm]\t[kN]", sep="\t", decimal=","),
+        '[columns]\ntime = "Temps"\ndisplacement = "Déplacement"\nforce = "Effort"\n' + ONE,
+    ),
+    "a rate in the preamble": (
+        "Data file\nSampling rate;200 Hz\nChannels;2\n"
+        + _table("Displacement (mm);Force (kN)", sep=";", timed=False),
+        ONE,
+    ),
+    "an interval in a comment": (
+        "# dt = 5 ms\n" + _table("displacement [mm],force [kN]", sep=",", timed=False), ONE,
+    ),
+    "a header that is a comment": (_table("# time [s] displacement [mm] force [kN]", sep=" "), ONE),
+    "a header that is a comment, Matlab": (
+        _table("% time [s],displacement [mm],force [kN]", sep=","), ONE
+    ),
+    "blanks between columns": (
+        _table("  Time (s)   Displacement (mm)   Force (kN)", sep="    "), ONE
+    ),
+    "comments between samples": (
+        _table("time [s],displacement [mm],force [kN]", sep=",").replace(
+            "\n1.0", "\n# pump switched on\n1.0", 1
+        ),
+        ONE,
+    ),
+    "a footer": (_table("time [s],displacement [mm],force [kN]", sep=",") + "End of file\n", ONE),
+    "no header": (
+        _table("", sep=",").lstrip(),
+        '[columns]\ntime = "column 1"\ndisplacement = "column 2"\nforce = "column 3"\n'
+        '[units]\ntime = "s"\ndisplacement = "mm"\nforce = "kN"\n' + ONE,
+    ),
+    "a rate in the campaign": (
+        _table("displacement [mm],force [kN]", sep=",", timed=False),
+        ONE + 'sampling_rate = "200 Hz"\n',
+    ),
+    "MTS": (
+        "MTS793|BTW|ENU|1|2|.|/|:|1|0|0|A\n\nData Acquisition: Timed\nStation Name: 100 kN\n"
+        + _table("Time\tAxial Displacement\tAxial Force\nSec\tmm\tkN", sep="\t"),
+        '[columns]\ndisplacement = "Axial Displacement"\nforce = "Axial Force"\n' + ONE,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_text_as_loggers_write_it(tmp_path: Path, name: str) -> None:
+    content, toml = TEXTS[name]
+    (tmp_path / "a.csv").write_text(content, encoding="utf-8")
+    _check(_campaign(tmp_path, toml), 1.0)
+
+
+def test_times_of_day_count_in_seconds(tmp_path: Path) -> None:
+    clock = [f"17.05.2024 23:59:{58 + t:06.3f}" if t < 2.0 else
+             f"18.05.2024 00:00:{t - 2.0:06.3f}" for t in TIME]  # fmt: skip
+    rows = [f"{c};{x:.9f};{f:.9f}" for c, x, f in zip(clock, STROKE, LOAD, strict=True)]
+    text = "time;displacement;force\ns;mm;kN\n" + "\n".join(rows).replace(".", ",").replace(
+        "05,2024", "05.2024"
+    ).replace("17,", "17.").replace("18,05", "18.05")
+    (tmp_path / "a.csv").write_text(text)
+    (record,) = _campaign(tmp_path, ONE).records
+    np.testing.assert_allclose(record.time - record.time[0], TIME, atol=1e-6)
+
+
+def test_several_tables_of_one_text(tmp_path: Path) -> None:
+    header = "time [s],displacement [mm],force [kN]"
+    first = _table(f"Test A\n{header}", sep=",")
+    second = f"\nTest B\n{header}\n" + "\n".join(
+        f"{t:.4f},{0.5 * x:.9f},{0.5 * f:.9f}" for t, x, f in zip(TIME, STROKE, LOAD, strict=True)
+    )
+    (tmp_path / "a.csv").write_text(first + second)
+    found = _campaign(tmp_path, ONE + 'group = "Test ?"\n')
+    _check(found, 1.0, 0.5)
+    _check(_campaign(tmp_path, ONE + "group = 2\n"), 0.5)
+
+
+def test_a_span_of_time_is_a_test(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text(_table("time [s],displacement [mm],force [kN]", sep=","))
+    two = ONE + 'range = "0 s : 2.5 s"\n' + ONE + 'range = "3000 ms :"\nheld_out = true\n'
+    first, second = _campaign(tmp_path, two).records
+    assert (first.time[0], first.time[-1]) == pytest.approx((0.0, 2.5))
+    assert (second.time[0], second.time[-1]) == pytest.approx((3.0, TIME[-1]))
+    assert (first.file, second.file) == ("a.csv [0 s : 2.5 s]", "a.csv [3000 ms :]")
+    assert second.held_out
+    for text, message in (
+        ("9 s : 10 s", "range must be inside the record, 0 to 5.995 s, got 9 s : 10 s"),
+        ("2 s : 1 s", "range must be rising, got '2 s : 1 s'"),
+        ("one", 'range must be a span of time as "10 s : 25 s"'),
+        ("A1:C9", "range must be a span of time, .* got 'A1:C9'"),
+    ):
+        with pytest.raises(InputError, match=message):
+            _campaign(tmp_path, ONE + f'range = "{text}"\n')
+
+
+def test_a_pattern_stands_for_every_file_that_no_table_names(tmp_path: Path) -> None:
+    for name in ("b.csv", "a.csv", "c.csv"):
+        (tmp_path / name).write_text(_table("time [s],displacement [mm],force [kN]", sep=","))
+    (tmp_path / "notes.md").write_text("ours")
+    every = '[[records]]\nfile = "*"\n'
+    found = _campaign(tmp_path, every + '[[records]]\nfile = "b.csv"\nheld_out = true\n')
+    assert [(r.file, r.held_out) for r in found.records] == [
+        ("a.csv", False), ("c.csv", False), ("b.csv", True)
+    ]  # fmt: skip
+    with pytest.raises(InputError, match="pattern that some record's name fits, got none"):
+        _campaign(tmp_path, '[[records]]\nfile = "*.tdms"\n')
+    with pytest.raises(InputError, match="must be in the campaign folder, got outside of it"):
+        _campaign(tmp_path, '[[records]]\nfile = "../*.csv"\n')
+
+
+def test_a_missing_package_is_named_with_its_extra(tmp_path: Path) -> None:
+    (tmp_path / "a.tdms").write_bytes(instruments.tdms({"all": 1.0}))
+    (tmp_path / "campaign.toml").write_text('[[records]]\nfile = "a.tdms"\n')
+    code = (
+        "import sys; sys.modules['nptdms'] = None; from discover.cli import main; "
+        f"sys.exit(main(['check', {str(tmp_path)!r}, '-o', {str(tmp_path / 'out')!r}]))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert 'pip install "inerter-discovery[tdms]"' in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_no_reader_needs_an_optional_package_before_its_file_is_read() -> None:
+    names = ("openpyxl", "h5py", "nptdms", "pyuff", "asammdf")
+    code = f"import sys; import discover.readers; print([n for n in {names!r} if n in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+def test_links_out_of_an_hdf5_file_are_not_followed(tmp_path: Path) -> None:
+    import h5py
+
+    with h5py.File(tmp_path / "other.h5", "w") as other:
+        other["time"], other["displacement"], other["force"] = TIME, STROKE, LOAD
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["own"] = TIME
+        for name in ("time", "displacement", "force"):
+            file[name] = h5py.ExternalLink("other.h5", f"/{name}")
+        file["loop"] = file["/"]
+    with pytest.raises(InputError, match="column 'time' must be among the headers, got own"):
+        _campaign(tmp_path, '[[records]]\nfile = "a.h5"\n')
+
+
+@pytest.mark.parametrize("kind", ["tdms", "xlsx", "h5", "mat", "uff", "mf4"])
+def test_damaged_files_are_refused_and_never_anything_else(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / f"a.{kind}"
+    if kind == "tdms":
+        path.write_bytes(instruments.tdms({"all": 1.0}))
+    else:
+        write = {"xlsx": instruments.workbook, "h5": instruments.hdf5, "uff": instruments.uff58,
+                 "mat": instruments.matlab_73, "mf4": instruments.mdf4}[kind]  # fmt: skip
+        write(path)
+    whole = path.read_bytes()
+    (tmp_path / "campaign.toml").write_text(f'[[records]]\nfile = "a.{kind}"\n')
+    rng = np.random.default_rng(1)
+    for _ in range(12):
+        data = bytearray(whole)
+        for _ in range(rng.integers(1, 6)):
+            data[rng.integers(min(3000, len(data)))] = rng.integers(256)
+        if rng.random() < 0.4:
+            del data[rng.integers(1, len(data)) :]
+        path.write_bytes(data)
+        try:
+            read_campaign(tmp_path)
+        except InputError as error:
+            assert len(str(error)) < 2000

@@ -1,0 +1,112 @@
+"""Units that make no sense are warned of, with the one that would; what makes sense is not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from discover.readers import read_campaign
+
+DEVICE = '[device]\npreset = "device-12"\n'  # 370 kg
+TIME = np.arange(4000) / 1000.0
+
+
+def _folder(
+    folder: Path,
+    *,
+    header: str = "time [s],displacement [m],force [N]",
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    head: str = "",
+    stroke: float = 0.008,
+) -> Path:
+    """Three sine tests of an inerter of 370 kg whose columns are written times a scale each."""
+    toml = head
+    for index, frequency in enumerate((2.0, 3.0, 4.5)):
+        w = 2 * np.pi * frequency
+        x = stroke * np.sin(w * TIME)
+        force = -370.0 * w**2 * x + 900.0 * stroke * w * np.cos(w * TIME)
+        columns = [c * s for c, s in zip((TIME, x, force), scale, strict=True)]
+        np.savetxt(
+            folder / f"{index}.csv", np.column_stack(columns), delimiter=",", header=header,
+            comments="", fmt="%.9g",
+        )  # fmt: skip
+        toml += f'[[records]]\nfile = "{index}.csv"\n'
+    (folder / "campaign.toml").write_text(toml)
+    return folder
+
+
+def _told(folder: Path) -> list[str]:
+    found = [f for f in read_campaign(folder).findings if f.level != "note"]
+    assert all(f.level == "warning" for f in found)
+    return [f.text for f in found if "no unit is stated" not in f.text]
+
+
+@pytest.mark.parametrize("head", ["", DEVICE])
+def test_what_makes_sense_is_not_warned_of(tmp_path: Path, head: str) -> None:
+    assert _told(_folder(tmp_path, head=head)) == []
+
+
+@pytest.mark.parametrize(
+    ("scale", "asked"),
+    [
+        ((1e3, 1.0, 1.0), "time in ms where s was read"),
+        ((1.0, 1e3, 1.0), "displacement in mm where m was read"),
+        ((1.0, 1e-3, 1.0), "displacement in m where mm was read"),
+        ((1.0, 1.0, 1e-3), "force in kN where N was read"),
+        ((1.0, 1.0, 1e3), "force in mN where N was read"),
+        ((1e-3, 1.0, 1.0), "time in s where ms was read"),
+    ],
+)
+def test_a_slip_in_all_records_of_a_known_device(
+    tmp_path: Path, scale: tuple[float, float, float], asked: str
+) -> None:
+    (text,) = _told(_folder(tmp_path, head=DEVICE, scale=scale))
+    assert text.startswith("all records: ")
+    assert asked in text
+
+
+def test_an_amplitude_that_makes_no_sense_tells_millimetres_from_kilonewtons(
+    tmp_path: Path,
+) -> None:
+    (text,) = _told(_folder(tmp_path, head=DEVICE, scale=(1.0, 1e3, 1.0)))
+    assert "the displacement's amplitude is 8 m; the apparent inertance is 0.37 kg" in text
+    assert "kN" not in text
+
+
+def test_millimetres_without_a_unit(tmp_path: Path) -> None:
+    header = "time [s],displacement,force [N]"
+    (text,) = _told(_folder(tmp_path, header=header, scale=(1.0, 1e3, 1.0)))
+    assert "amplitude is 8 m: is displacement in mm where m was read? It would make" in text
+
+
+def test_milliseconds_labelled_seconds_without_a_device(tmp_path: Path) -> None:
+    (text,) = _told(_folder(tmp_path, scale=(1e3, 1.0, 1.0)))
+    assert "sampling interval is 1 s" in text
+    assert "is time in ms where s was read? It would make sense" in text
+
+
+def test_a_rig_can_not_have_done_it(tmp_path: Path) -> None:
+    head = '[rig]\nmax_stroke = "25 mm"\nmax_force = "20 kN"\n'
+    (text,) = _told(_folder(tmp_path, head=head, scale=(1.0, 50.0, 1.0)))
+    assert "the displacement's amplitude is 0.4 m, beyond the rig's 0.025 m" in text
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 30.0])
+def test_a_device_of_any_size_without_inertia_is_never_accused(
+    tmp_path: Path, scale: float
+) -> None:
+    """A damper's force says nothing of inertance."""
+    toml = DEVICE
+    for index, frequency in enumerate((0.5, 1.0)):
+        w = 2 * np.pi * frequency
+        x, v = 0.01 * np.sin(w * TIME), 0.01 * w * np.cos(w * TIME)
+        force = scale * (2e4 * v + 300.0 * np.sign(v) + 2e4 * x)
+        header = "time [s],displacement [m],force [N]"
+        columns = np.column_stack([TIME, x, force])
+        path = tmp_path / f"{index}.csv"
+        np.savetxt(path, columns, delimiter=",", header=header, comments="")
+        toml += f'[[records]]\nfile = "{index}.csv"\n'
+    (tmp_path / "campaign.toml").write_text(toml)
+    assert _told(tmp_path) == []

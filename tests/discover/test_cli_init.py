@@ -1,0 +1,255 @@
+"""``inerter init``: from a folder of files to a campaign that ``check`` passes."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from discover.cli import main
+from discover.readers import read_campaign
+from tests.discover.readers import instruments
+
+REAL = Path(__file__).parents[3] / "shared" / "real-data"
+TIME = np.arange(2400) / 400.0
+
+
+def _test(frequency: float, stroke: float = 8e-3) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement, m, and force, N, of 120 kg and 900 N s/m, with the noise of a load cell."""
+    w = 2 * np.pi * frequency
+    x = stroke * np.sin(w * TIME)
+    force = -120.0 * w**2 * x + 900.0 * stroke * w * np.cos(w * TIME)
+    rng = np.random.default_rng(int(10 * frequency))
+    return x, force + 0.01 * force.std() * rng.standard_normal(TIME.size)
+
+
+def _csv(path: Path, header: str, frequency: float, *, timed: bool = True) -> None:
+    x, force = _test(frequency)
+    columns = [TIME, 1e3 * x, 1e-3 * force] if timed else [1e3 * x, 1e-3 * force]
+    np.savetxt(
+        path, np.column_stack(columns), delimiter=";", header=header, comments="", fmt="%.9g"
+    )
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_folder_of_tdms_xlsx_and_lvm(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from tests.discover.readers.test_instruments import _lvm
+
+    (here / "lab").mkdir()
+    (here / "lab" / "monday.tdms").write_bytes(instruments.tdms({"run 1": 1.0, "run 2": 0.5}))
+    instruments.workbook(here / "lab" / "tests.xlsx")
+    (here / "lab" / "old.lvm").write_text(_lvm("One", 0.7))
+    (here / "lab" / "notes.txt").write_text("nothing of interest\n")
+    assert main(["init", "lab", "-o", "page"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert out.splitlines()[-2] == "Next: inerter check lab"
+    assert "Left out: notes.txt: " in out
+    found = read_campaign("lab")
+    assert len(found.records) == 5
+    assert len(found.held_out) == 1
+    speeds = [np.ptp(r.displacement) for r in found.records]
+    assert speeds == pytest.approx([8e-3 * 2 * f for f in (1.0, 0.5, 0.7, 1.0, 0.5)], rel=1e-3)
+    page = (here / "page" / "report.html").read_text()
+    assert page.count("<svg") == 5
+    document = json.loads((here / "page" / "init.json").read_text())
+    assert document["schema"] == "inerter.init/1"
+    assert {r["columns"]["force"]["unit"] for r in document["records"]} == {"kN"}
+    assert main(["check", "lab", "-o", "checked"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("header", "sure"),
+    [
+        ("Zeit [s];Weg [mm];Kraft [kN]", "sure"),
+        ("Temps (s);Déplacement (mm);Effort (kN)", "sure"),
+        ("t;Axial Displacement;Axial Force\ns;mm;kN", "sure"),
+        ("Elapsed Time;LVDT 1;Load cell\nSec;mm;kN", "sure"),
+        ("Zeit [s];Signal 1 [mm];Signal 2 [kN]", "likely"),
+    ],
+)
+def test_columns_as_laboratories_call_them(here: Path, header: str, sure: str) -> None:
+    for frequency in (1.0, 2.0, 3.0):
+        _csv(here / f"run-{frequency}.csv", header, frequency)
+    assert main(["init", "."]) == 0
+    document = json.loads((here / "inerter-out" / f"init-{here.name}" / "init.json").read_text())
+    assert document["doubts"] == []
+    assert {r["columns"]["force"]["sure"] for r in document["records"]} == {sure}
+    found = read_campaign(here)
+    x, force = _test(1.0)
+    np.testing.assert_allclose(found.records[0].displacement, x, atol=1e-9)
+    np.testing.assert_allclose(found.records[0].force, force, rtol=1e-6, atol=1e-5)
+    assert [r.held_out for r in found.records] == [False, True, False]
+    assert found.findings == ()
+
+
+def test_a_command_is_no_measurement(here: Path) -> None:
+    x, force = _test(2.0)
+    table = np.column_stack([TIME, 1e3 * x + 0.5, 1e3 * x, 1e-3 * force])
+    header = "Time (s),Displacement command (mm),Displacement (mm),Force (kN)"
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    assert main(["init", "a.csv"]) == 0
+    np.testing.assert_allclose(read_campaign(here).records[0].displacement, x, atol=1e-9)
+
+
+def test_what_no_file_states_is_told_and_can_be_answered(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _csv(here / "a.csv", "t;x;F", 2.0)
+    assert main(["init", "."]) == 0
+    out = capsys.readouterr().out
+    assert "Unsure: the unit of displacement, mm (no file states it; taken by the size" in out
+    assert "Unsure: the unit of force, N" in out
+    assert "--replace --unit force=kN" in out
+    assert main(["init", "."]) == 2
+    assert "campaign.toml must be new (--replace writes over it)" in capsys.readouterr().err
+    units = ["--unit", "force=kN", "--unit", "displacement=mm", "--unit", "time=s"]
+    assert main(["init", ".", "--replace", "--device", "device-12", *units]) == 0
+    assert "Unsure" not in capsys.readouterr().out
+    found = read_campaign(here)
+    np.testing.assert_allclose(found.records[0].force, _test(2.0)[1], rtol=1e-6, atol=1e-5)
+    assert found.device is not None
+
+
+def test_columns_without_names_are_told_by_what_they_do(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    x, force = _test(2.0)
+    np.savetxt(here / "a.dat", np.column_stack([force, TIME, 1e3 * x]), fmt="%.9g")
+    assert main(["init", "a.dat", "--unit", "force=N", "--unit", "displacement=mm"]) == 0
+    assert "time is column 'column 2' (likely: it alone rises evenly)" in capsys.readouterr().out
+    (record,) = read_campaign(here).records
+    np.testing.assert_allclose(record.displacement, x, atol=1e-9)
+    named = ["--column", "force=column 3", "--column", "displacement=column 1"]
+    assert main(["init", "a.dat", "--replace", *named]) == 0
+    assert read_campaign(here).records[0].force[5] == pytest.approx(1e3 * x[5])
+
+
+def test_files_without_time_take_a_sampling_rate(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _csv(here / "a.csv", "displacement [mm];force [kN]", 2.0, timed=False)
+    assert main(["init", "."]) == 2
+    assert "time (or a sampling rate)" in capsys.readouterr().err
+    assert not (here / "campaign.toml").exists()
+    assert main(["init", ".", "--sampling-rate", "0.4 kHz"]) == 0
+    np.testing.assert_allclose(read_campaign(here).records[0].time, TIME, atol=1e-9)
+
+
+def test_on_a_terminal_it_asks_what_it_cant_know(
+    here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import io
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    x, force = _test(2.0)
+    table = np.column_stack([TIME, 1e3 * x, 2e-3 * force, 1e-3 * force])
+    header = "Time [s],Displacement [mm],Load 1 [kN],Load 2 [kN]"
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    monkeypatch.setattr("sys.stdin", Terminal("2\n\n"))
+    monkeypatch.setattr("discover.cli.questions.at_terminal", lambda: True)
+    assert main(["init", "."]) == 0
+    err = capsys.readouterr().err
+    assert "Which column is the force? " in err
+    assert "2  Load 2 [kN]" in err
+    assert "Device (device-12, device-10; Enter for none)" in err
+    np.testing.assert_allclose(read_campaign(here).records[0].force, force, rtol=1e-6, atol=1e-5)
+
+
+def test_one_bad_file_does_not_spoil_the_rest(here: Path) -> None:
+    for frequency in (1.0, 2.0):
+        _csv(here / f"run-{frequency}.csv", "time [s];displacement [mm];force [kN]", frequency)
+    text = (here / "run-2.0.csv").read_text().splitlines()
+    text[9] = "0.02;overload;1"
+    (here / "run-2.0.csv").write_text("\n".join(text))
+    assert main(["init", "."]) == 0
+    assert len(tomllib.loads((here / "campaign.toml").read_text())["records"]) == 1
+    document = json.loads((here / "inerter-out" / f"init-{here.name}" / "init.json").read_text())
+    assert "line 10: displacement [mm] must be a number" in document["left_out"][0]["why"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["init"], "FOLDER|FILE"),
+        (["init", "nowhere"], "nowhere must be a folder or a file"),
+        (["init", "."], "at least one with time"),
+        (["init", ".", "--device", "device-13"], "--device: device must be one of device-12"),
+        (["init", ".", "--unit", "force"], "--unit: value must be QUANTITY=UNIT, got 'force'"),
+        (["init", ".", "--unit", "force=mm"], "--unit: force must be in a unit of force"),
+        (["init", ".", "--column", "forse=F"], "(did you mean 'force'?)"),
+        (["init", ".", "--sampling-rate", "fast"], "--sampling-rate: rate must be"),
+    ],
+)
+def test_bad_input_is_one_line(
+    here: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
+    assert main(arguments) == 2
+    err = capsys.readouterr().err
+    assert message in err
+    assert err.count("\n") == 1
+    assert list(here.iterdir()) == []
+
+
+def test_check_takes_one_file(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _csv(here / "a.csv", "Zeit [s];Weg [mm];Kraft", 2.0)
+    assert main(["check", "a.csv"]) == 0
+    out = capsys.readouterr().out
+    assert "force is column 'Kraft' (likely: its name is used for it), in N (guessed)" in out
+    assert "the unit of force is a guess, 'N': no file states it" in out
+    _csv(here / "b.csv", "time [s];displacement [mm];force [kN]", 2.0)
+    assert read_campaign(here / "b.csv").findings == ()
+    assert not (here / "campaign.toml").exists()
+
+
+def test_an_error_comes_with_what_reading_warned_of(
+    here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from models.checks import InputError
+
+    def refuse(*_: object) -> None:
+        raise InputError("displacement", expected="motion", found="noise", where="a.csv")
+
+    x, force = _test(2.0)
+    table = np.column_stack([TIME, np.clip(1e3 * x, -6.0, 6.0), force])
+    header = "time [s],displacement [mm],force [N]"
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    monkeypatch.setattr("discover.data_check.check_campaign", refuse)
+    assert main(["check", "a.csv"]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "inerter: a.csv: displacement must be motion, got noise"
+    assert "displacement stays at its largest value 0.006 m" in lines[1]
+    assert lines[-1].endswith("it may be why")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(p.name for p in REAL.glob("*/")) if REAL.is_dir() else [])
+def test_measured_folders_without_their_campaign(here: Path, name: str) -> None:
+    shutil.copytree(REAL / name, here / name, copy_function=shutil.copyfile)
+    (here / name).chmod(0o755)
+    (here / name / "campaign.toml").unlink()
+    assert main(["init", name]) == 0
+    mine, theirs = read_campaign(name), read_campaign(REAL / name)
+    assert {r.file for r in mine.records} == {r.file for r in theirs.records}
+    assert [f for f in mine.findings if f.level == "error"] == []
+
+
+def test_tests_of_one_file_have_results_of_their_own(here: Path) -> None:
+    instruments.workbook(here / "tests.xlsx")
+    toml = '[device]\npreset = "device-12"\n[[records]]\nfile = "tests.xlsx"\nsheet = "*"\n'
+    (here / "campaign.toml").write_text(toml)
+    assert main(["simulate", "ioim-laminar", ".", "-o", "out"]) == 0
+    names = {p.name for p in (here / "out").iterdir()}
+    assert {"tests.xlsx [Test 1].csv", "tests.xlsx [Test 2].csv"} <= names
