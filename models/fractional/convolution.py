@@ -149,7 +149,7 @@ def weight_spectra(
 def convolve(
     sources: Array,
     choice: NDArray[np.intp],
-    spectra: Sequence[Complex],
+    spectra: Sequence[Complex | None],
     scales: Array,
     samples: int,
 ) -> Array:
@@ -161,8 +161,8 @@ def convolve(
         Variants of R records; padded with zeros to L already, or not.
     choice : ndarray of int, shape (K,)
         The variant that each order works on.
-    spectra : sequence of K ndarrays, shape (L // 2 + 1,)
-        From `weight_spectra` for N samples.
+    spectra : sequence of K ndarrays, shape (L // 2 + 1,), or None
+        From `weight_spectra` for N samples; None leaves the records as they are.
     scales : ndarray, shape (K,)
         Factor of each order.
     samples : int
@@ -182,18 +182,25 @@ def convolve(
     records = sources.shape[1]
     length = padded_length(samples)
     out = np.empty((len(spectra), records, samples))
+    jobs = []
+    for k, spectrum in enumerate(spectra):
+        if spectrum is None:
+            np.multiply(sources[choice[k], :, :samples], scales[k], out=out[k])
+        else:
+            jobs += [(spectrum, k, r) for r in range(records)]
+    if not jobs:
+        return out
     transformed = scipy.fft.rfft(sources, n=length, axis=-1)
 
-    def work(share: list[tuple[int, int]]) -> None:
-        product = np.empty((_ROWS, length // 2 + 1), dtype=np.complex128)
+    def work(share: list[tuple[Complex, int, int]]) -> None:
+        product = np.empty((min(_ROWS, len(share)), length // 2 + 1), dtype=np.complex128)
         for block in _blocks(share, _ROWS):
-            for row, (k, r) in zip(product, block, strict=False):
-                np.multiply(spectra[k], transformed[choice[k], r], out=row)
+            for row, (spectrum, k, r) in zip(product, block, strict=False):
+                np.multiply(spectrum, transformed[choice[k], r], out=row)
             values = scipy.fft.irfft(product[: len(block)], n=length, axis=-1, workers=1)
-            for row, (k, r) in zip(values, block, strict=True):
+            for row, (_, k, r) in zip(values, block, strict=True):
                 np.multiply(row[:samples], scales[k], out=out[k, r])
 
-    jobs = [(k, r) for k in range(len(spectra)) for r in range(records)]
     shares = max(1, min(int(scipy.fft.get_workers()), len(jobs) // _ROWS))
     map_threads(work, _blocks(jobs, math.ceil(len(jobs) / shares)))
     return out
