@@ -83,12 +83,13 @@ def causal_derivative(
     sources = np.zeros((len(split.wholes), records, padded_length(samples)))
     for source, whole in zip(sources, split.wholes, strict=True):
         for into, row, its in zip(source, x, starts, strict=True):
-            into[:samples] = whole_derivative(row, its, whole, steps, stride)
+            whole_derivative(row, its, whole, steps, stride, out=into[:samples])
             for start in its:
                 ends = taylor(start, whole) @ end_corrections(start.offset)
                 part = into[start.first : min(start.first + ends.size, samples)]
                 part += ends[: part.size]
-    out = convolve(sources, split.choice, _spectra(split.rest, samples, INTEGRAL_STEPS), scales, samples)
+    spectra = _spectra(split.rest, samples, INTEGRAL_STEPS)
+    out = convolve(sources, split.choice, spectra, scales, samples)
     for r, its in enumerate(starts):
         for start in its:
             heads = start_corrections(start, split)

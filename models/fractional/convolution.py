@@ -193,7 +193,10 @@ def convolve(
     transformed = scipy.fft.rfft(sources, n=length, axis=-1)
 
     def work(share: list[tuple[Complex, int, int]]) -> None:
-        product = np.empty((min(_ROWS, len(share)), length // 2 + 1), dtype=np.complex128)
+        product = transformed[choice[jobs[0][1]], jobs[0][2]][None]
+        # An only product may take the place of what it is made of.
+        if len(jobs) > 1:
+            product = np.empty((_ROWS, length // 2 + 1), dtype=np.complex128)
         for block in _blocks(share, _ROWS):
             for row, (spectrum, k, r) in zip(product, block, strict=False):
                 np.multiply(spectrum, transformed[choice[k], r], out=row)

@@ -11,6 +11,7 @@ from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 from scipy.special import factorial
 
+from models.fractional.blocks import BLOCK, blocks
 from models.fractional.orders import Array
 from models.fractional.start import Start
 from models.fractional.weights import difference_polynomial
@@ -85,25 +86,27 @@ def backward_difference(
     plain = x
     for _ in range(whole):
         plain = np.concatenate([plain[:stride], plain[stride:] - plain[:-stride]])
-    taps = polynomial.polypow(_beyond_plain(steps) / stride, whole)
+    taps = _taps(whole, steps) / float(stride) ** whole
     out: Array = taps[0] * plain[past:]
-    for k in range(1, min(taps.size, (x.size - 1) // stride + 1)):
-        lag = k * stride
-        out[max(lag - past, 0) :] += taps[k] * plain[max(past - lag, 0) : x.size - lag]
+    term: Array = np.empty(out.size)
+    for lag, tap in zip(range(stride, x.size, stride), taps[1:], strict=False):
+        first = max(lag - past, 0)
+        np.multiply(plain[past - lag + first : x.size - lag], tap, out=term[first:])
+        out[first:] += term[first:]
     return out
 
 
 @functools.cache
-def _beyond_plain(steps: int) -> Array:
-    """Coefficients of delta(zeta) / (1 - zeta)."""
-    rest = [sum(difference_polynomial(steps)[: k + 1]) for k in range(steps)]
-    return np.array([float(c) for c in rest])
+def _taps(whole: int, steps: int) -> Array:
+    """Coefficients of (delta(zeta) / (1 - zeta))^m."""
+    rest = [float(sum(difference_polynomial(steps)[: k + 1])) for k in range(steps)]
+    return np.asarray(polynomial.polypow(rest, whole), dtype=np.float64)
 
 
 def whole_derivative(
-    x: Array, starts: Sequence[Start], whole: int, steps: int, stride: int
-) -> Array:
-    """Return the m-th derivative, each start's samples without those before it.
+    x: Array, starts: Sequence[Start], whole: int, steps: int, stride: int, *, out: Array
+) -> None:
+    """Write the m-th derivative, each start's samples without those before it.
 
     Parameters
     ----------
@@ -112,25 +115,26 @@ def whole_derivative(
         In order; the first one at the first sample.
     whole, steps, stride
         As for `backward_difference`.
-
-    Returns
-    -------
-    ndarray, shape (N,)
+    out : ndarray, shape (N,)
         Per sample^m.
 
     Examples
     --------
     >>> from models.fractional.start import fit_start
     >>> x = np.arange(30.0) ** 2
-    >>> bool(np.allclose(whole_derivative(x, [fit_start(x)], 2, 6, 1), 2.0))
+    >>> found = np.empty(30)
+    >>> whole_derivative(x, [fit_start(x)], 2, 6, 1, out=found)
+    >>> bool(np.allclose(found, 2.0))
     True
     """
-    out = backward_difference(x, whole, steps, stride)
     behind = reach(whole, steps, stride)
+    for part in blocks(0, x.size, 4 * max(BLOCK, behind)):
+        past = min(part.start, behind)
+        seen = x[part.start - past : part.stop]
+        out[part] = backward_difference(seen, whole, steps, stride, past=past)
     for start in starts:
         near = slice(start.first, start.first + behind)
         out[near] = started_derivative(x[near], start, whole, steps, stride)
-    return out
 
 
 def started_derivative(

@@ -17,7 +17,7 @@ from models.fractional.kinks import find_starts
 from models.fractional.l1 import l1_derivative
 from models.fractional.noise import roughness
 from models.fractional.orders import Array, checked_orders, checked_record
-from models.fractional.quadrature import noise_gain
+from models.fractional.quadrature import noise_gains
 from models.fractional.result import KINDS, FractionalDerivative
 from models.fractional.spectral import spectral_derivative
 from models.fractional.weights import BDF_STEPS
@@ -284,6 +284,7 @@ def _noise(task: _Task, choice: Choice, out: Array) -> Array:
     """Relative rms error, (K,), that the noise of the samples makes."""
     level = max(roughness(row).noise for row in task.rows)
     steps = BDF_STEPS.get(choice.scheme, 2)
-    noise = level * noise_gain(task.orders, steps, choice.stride) * task.dt**-task.orders
+    gains = noise_gains(task.orders, [choice.stride])[0, :, steps - 1]
+    noise = level * gains * task.dt**-task.orders
     size = np.sqrt(np.mean(out**2, axis=(1, 2)))
     return np.asarray(noise / np.maximum(size, 1e-300))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from models.fractional.blocks import blocks
 from models.fractional.correction import MOMENTS
 from models.fractional.orders import Array
 from models.fractional.start import DEGREE, Start, fit_start
@@ -73,10 +74,14 @@ def _outstanding(x: Array) -> list[tuple[int, int]]:
     """Return the last sample surely before and the first surely after each suspected kink."""
     if x.size < 4 * _ROOM:
         return []
-    rough = np.abs(np.diff(x, n=_DIFFERENCES))
-    level = float(np.sqrt(rough @ rough / rough.size))
-    if float(rough.max()) < _OUTSTANDING * level:
+    largest, squares, count = 0.0, 0.0, x.size - _DIFFERENCES
+    for part in blocks(0, count):
+        rough = np.diff(x[part.start : part.stop + _DIFFERENCES], n=_DIFFERENCES)
+        largest = max(largest, float(rough.max()), -float(rough.min()))
+        squares += float(rough @ rough)
+    if largest < _OUTSTANDING * np.sqrt(squares / count):
         return []
+    rough = np.abs(np.diff(x, n=_DIFFERENCES))
     spans: list[tuple[int, int]] = []
     # Kinks of different size: each time the largest one left, judged by its neighbourhood.
     left = rough.copy()
@@ -84,7 +89,7 @@ def _outstanding(x: Array) -> list[tuple[int, int]]:
         peak = int(np.argmax(left))
         around = rough[max(peak - _NEIGHBOURHOOD, 0) : peak + _NEIGHBOURHOOD]
         typical = float(np.median(around))
-        if left[peak] < _OUTSTANDING * max(typical, 1e-300) or left[peak] < 1e-3 * rough.max():
+        if left[peak] < _OUTSTANDING * max(typical, 1e-300) or left[peak] < 1e-3 * largest:
             break
         near = np.arange(max(peak - _DIFFERENCES, 0), min(peak + _DIFFERENCES + 1, rough.size))
         high = near[rough[near] > 8.0 * typical]

@@ -8,9 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from models.fractional.blocks import blocks
 from models.fractional.orders import Array
 
 _HIGHEST = 10
+_RUNS = 32
+_RUN_SAMPLES = 64
 _BLOCKS = 8
 _BLOCK_SAMPLES = 512
 _FEWEST = 24
@@ -52,62 +55,73 @@ def roughness(x: Array) -> Roughness:
     >>> bool(0.8e-4 < roughness(np.sin(30 * t) + noise).noise < 1.2e-4)
     True
     """
-    size = float(np.std(x))
-    rounding = np.finfo(np.float64).eps * float(np.max(np.abs(x))) / 4.0
+    mean = float(x.mean())
+    squares = 0.0
+    for part in blocks(0, x.size):
+        centred = x[part] - mean
+        squares += float(centred @ centred)
+    size = math.sqrt(squares / x.size)
+    rounding = np.finfo(np.float64).eps * max(float(x.max()), -float(x.min())) / 4.0
     if x.size < _FEWEST:
         return Roughness(size, rounding)
     estimates = []
     differences = _blocks(x, min(max(x.size // 4, _FEWEST), _BLOCK_SAMPLES))
     for d in range(1, _HIGHEST + 1):
         differences = differences[:, 1:] - differences[:, :-1]
-        level = np.median(np.einsum("bn,bn->b", differences, differences)) / differences.shape[1]
-        estimates.append(math.sqrt(float(level) / math.comb(2 * d, d)))
-    return Roughness(size, max(min(estimates), rounding))
+        squares = np.einsum("bn,bn->b", differences, differences)
+        estimates.append(squares / (differences.shape[1] * math.comb(2 * d, d)))
+    noise = math.sqrt(float(np.median(estimates, axis=1).min()))
+    return Roughness(size, max(noise, rounding))
 
 
 def smooth_differences(
-    pieces: Sequence[Array], noise: float, *, highest: int, stride: int
+    x: Array, noise: float, strides: Sequence[int], *, highest: int, breaks: Sequence[int] = ()
 ) -> Array:
-    """Return the rms of differences over a stride, less what white noise adds.
+    """Return the rms of differences over strides, less what white noise adds.
+
+    They are taken from runs of samples spread evenly over the record.
 
     Parameters
     ----------
-    pieces : sequence of ndarrays, shape (n_i,)
-        The stretches of a record between its kinks.
+    x : ndarray, shape (N,)
     noise : float
         Standard deviation of the white part.
+    strides : sequence of S int
+        Samples from one point of a difference to the next, ascending.
     highest : int
-    stride : int
-        Samples from one point of a difference to the next.
+    breaks : sequence of int, optional
+        First samples behind kinks: runs that hold one do not count, unless all do.
 
     Returns
     -------
-    ndarray, shape (highest,)
-        First to highest differences; the highest that a piece is long enough for stands for
+    ndarray, shape (S, highest)
+        First to highest differences; the highest that the record is long enough for stands for
         those above it.
 
     Examples
     --------
     >>> t = np.arange(100.0)
-    >>> smooth_differences([t**2], 0.0, highest=3, stride=5)[1:]
-    array([50.,  0.])
+    >>> smooth_differences(t**2, 0.0, [1, 5], highest=3)[:, 1:]
+    array([[ 2.,  0.],
+           [50.,  0.]])
     """
-    squares, counts = np.zeros(highest), np.zeros(highest)
-    for piece in pieces:
-        thinned = piece[::stride]
-        few = thinned.size <= _BLOCKS * _BLOCK_SAMPLES
-        differences = thinned[None] if few else _blocks(thinned, _BLOCK_SAMPLES)
-        for d in range(min(highest, differences.shape[1] - 1)):
-            differences = differences[:, 1:] - differences[:, :-1]
-            flat = differences.ravel()
-            squares[d] += float(flat @ flat)
-            counts[d] += flat.size
-    formed = int(np.count_nonzero(counts))
-    gains = np.array([math.comb(2 * d, d) for d in range(1, formed + 1)])
-    smooth = np.sqrt(
-        np.clip(squares[:formed] / counts[:formed] - _UNEVEN * noise**2 * gains, 0.0, None)
-    )
-    return np.pad(smooth, (0, highest - formed), mode="edge")
+    steps = np.array(strides)[:, None]
+    count = min(_RUN_SAMPLES, (x.size - 1) // strides[-1] + 1)
+    spans = (count - 1) * steps
+    firsts = ((x.size - 1 - spans) * np.linspace(0.0, 1.0, _RUNS)).astype(np.intp)
+    crossed = np.zeros(firsts.shape, dtype=bool)
+    for at in breaks:
+        crossed |= (firsts < at) & (at <= firsts + spans)
+    counted = ~crossed | crossed.all(axis=1, keepdims=True)
+    shares = counted / counted.sum(axis=1, keepdims=True)
+    differences = x[firsts[:, :, None] + steps[:, :, None] * np.arange(count)]
+    sizes = []
+    for d in range(1, min(highest, count - 1) + 1):
+        differences = differences[:, :, 1:] - differences[:, :, :-1]
+        squares = np.einsum("srn,srn->sr", differences, differences) / (count - d)
+        added = _UNEVEN * noise**2 * math.comb(2 * d, d)
+        sizes.append(np.sqrt(np.clip((squares * shares).sum(axis=1) - added, 0.0, None)))
+    return np.stack(sizes + sizes[-1:] * (highest - len(sizes)), axis=1)
 
 
 def _blocks(x: Array, samples: int) -> Array:

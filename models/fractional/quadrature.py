@@ -18,6 +18,8 @@ from models.fractional.weights import BDF_STEPS, INTEGRAL_STEPS, convolution_wei
 _SCHEMES = ("bdf6", "bdf5", "bdf4", "bdf3", "bdf2")
 _STEPS = np.array([BDF_STEPS[name] for name in _SCHEMES])
 _NORM_WEIGHTS = 64
+# Points that a stride leaves of a record, at least.
+_RUN = 16
 # Logarithm of a ratio that is hopeless, still far from overflow.
 _LARGE = 300.0
 
@@ -34,38 +36,44 @@ class Quadrature:
     """Relative rms error of the worst order and record."""
 
 
-def noise_gain(orders: Array, steps: int, stride: int) -> Array:
-    r"""Rms, (K,), of the derivative of white noise of unit size, per sample^order.
+def noise_gains(orders: Array, strides: Sequence[int]) -> Array:
+    r"""Rms of the derivative of white noise of unit size, per sample^order.
 
     With stride 1 that is the norm of the weights of differences and integral together. A stride
-    s divides it by :math:`s^m` where the integral behind the m-th difference passes mostly its
-    high frequencies, and by :math:`s^{\alpha+1/2}` where it passes mostly the low ones.
+    s divides it by :math:`s^m` where the integral behind the m-th difference passes mostly the
+    noise's high frequencies, and by :math:`s^{\alpha+1/2}` where it passes mostly the low ones.
 
     Parameters
     ----------
     orders : ndarray, shape (K,)
-    steps, stride : int
+    strides : sequence of S int
+
+    Returns
+    -------
+    ndarray, shape (S, K, 6)
+        For 1 to 6 steps.
 
     Examples
     --------
-    >>> noise_gain(np.array([1.0]), 1, 10)
-    array([0.14142136])
+    >>> noise_gains(np.array([1.0]), [1, 10])[:, 0, 0].round(4)
+    array([1.4142, 0.1414])
     """
     whole = np.maximum(np.ceil(orders), 0.0)
-    slower = float(stride) ** -np.minimum(whole, np.abs(orders + 0.5))
-    return np.asarray(_norms(tuple(orders.tolist()), steps) * slower)
+    powers = np.minimum(whole, np.abs(orders + 0.5))
+    slower = np.array(strides, dtype=np.float64)[:, None] ** -powers
+    return np.asarray(slower[:, :, None] * _norms(tuple(orders.tolist())))
 
 
 @functools.lru_cache(maxsize=64)
-def _norms(orders: tuple[float, ...], steps: int) -> Array:
-    """Norms of the weights of each order."""
-    alpha = np.array(orders)
-    whole = np.maximum(np.ceil(alpha), 0.0)
-    weights = convolution_weights(alpha - whole, _NORM_WEIGHTS, INTEGRAL_STEPS)
+def _norms(orders: tuple[float, ...]) -> Array:
+    """Norms of the weights of each order and number of steps, (K, 6)."""
+    whole = np.maximum(np.ceil(orders), 0.0)
+    weights = convolution_weights(orders - whole, _NORM_WEIGHTS, INTEGRAL_STEPS)
     each = [
-        backward_difference(row, int(m), steps, 1) for row, m in zip(weights, whole, strict=True)
+        [backward_difference(row, int(m), p, 1) for p in BDF_STEPS.values()]
+        for row, m in zip(weights, whole, strict=True)
     ]
-    norms: Array = np.linalg.norm(each, axis=1)
+    norms: Array = np.linalg.norm(each, axis=2)
     return norms
 
 
@@ -95,63 +103,48 @@ def best_quadrature(
     >>> best.scheme, best.stride
     ('bdf6', 1)
     """
-    measured = [_measure(row, its) for row, its in zip(rows, starts, strict=True)]
     width = min(start.width for its in starts for start in its)
     most = max(int(np.ceil(orders.max())), 0)
-    best = Quadrature(_SCHEMES[-1], 1, np.inf)
-    stride = 1
-    while stride == 1 or 0 < reach(most, _STEPS[-1], stride) <= width:
-        gains = np.stack([noise_gain(orders, BDF_STEPS[scheme], stride) for scheme in _SCHEMES])
-        # (R, 2, 5): truncation and noise of each scheme.
-        expected = np.array([_expected(m, orders, stride, gains) for m in measured])
-        truncation, noise = expected.max(axis=0)
-        for scheme, error in zip(_SCHEMES, np.hypot(truncation, noise), strict=True):
-            fits = stride == 1 or reach(most, BDF_STEPS[scheme], stride) <= width
-            if fits and error < best.error:
-                best = Quadrature(scheme, stride, float(error))
-        stride *= 2
-    return best
+    longest = min(width // reach(most, _STEPS[-1], 1), rows.shape[1] // _RUN) if most else 1
+    strides = [1]
+    while 2 * strides[-1] <= longest:
+        strides.append(2 * strides[-1])
+    each = [_errors(row, its, orders, strides) for row, its in zip(rows, starts, strict=True)]
+    errors = np.max(each, axis=0)
+    for s, stride in enumerate(strides[1:], start=1):
+        errors[s, most * stride * _STEPS > width] = np.inf
+    s, scheme = divmod(int(np.argmin(errors)), len(_SCHEMES))
+    return Quadrature(_SCHEMES[scheme], strides[s], float(errors[s, scheme]))
 
 
-@dataclass(frozen=True)
-class _Measured:
-    """What the errors of a quadrature follow from."""
-
-    pieces: tuple[Array, ...]
-    """Stretches of the record between its kinks."""
-    size: float
-    """rms about the mean."""
-    noise: float
-    """Standard deviation of the white part."""
-
-
-def _measure(row: Array, starts: Sequence[Start]) -> _Measured:
+def _errors(
+    row: Array, starts: Sequence[Start], orders: Array, strides: Sequence[int]
+) -> Array:
+    """Relative rms errors of the worst order by truncation and noise, (S, 5)."""
     rough = roughness(row)
-    pieces = tuple(np.split(row, [start.first for start in starts[1:]]))
-    return _Measured(pieces, rough.size, rough.noise)
-
-
-def _expected(measured: _Measured, orders: Array, stride: int, gains: Array) -> Array:
-    """Relative rms errors of the worst order by truncation and noise, (2, 5)."""
-    differences = smooth_differences(
-        measured.pieces, measured.noise, highest=_STEPS[0] + 2, stride=stride
-    )
-    # Logarithms of the sizes of the record and its differences, (9,), and between them, (K, 7).
-    sizes = np.log(np.maximum(np.concatenate([[measured.size], differences]), 1e-300))
+    highest = int(_STEPS[0]) + 2
+    breaks = [start.first for start in starts[1:]]
+    differences = smooth_differences(row, rough.noise, strides, highest=highest, breaks=breaks)
+    # Logarithms of the sizes of the record and its differences, (S, 9).
+    sizes = np.concatenate([np.full((len(strides), 1), rough.size), differences], axis=1)
+    sizes = np.log(np.maximum(sizes, 1e-300))
+    # And of those of fractional orders between them, (S, K, 7).
     below = np.where(orders > 1.0, 1, 0)
     higher = below[:, None] + np.arange(_STEPS[0] + 1)
     part = (orders - below)[:, None]
-    between = (1.0 - part) * sizes[higher] + part * sizes[higher + 1]
+    between = (1.0 - part) * sizes[:, higher] + part * sizes[:, higher + 1]
     # A ramp has no second derivative: there, as if the record had one frequency.
-    derived = np.maximum(between[:, 0], (1.0 - orders) * sizes[0] + orders * sizes[1])[:, None]
-    ratios = between[:, 1:] - derived
+    single = (1.0 - orders) * sizes[:, :1] + orders * sizes[:, 1:2]
+    derived = np.maximum(between[:, :, 0], single)
+    ratios = between[:, :, 1:] - derived[:, :, None]
     # The second holds for what is smooth but for its start, as a ramp is.
-    ratios = np.maximum(ratios[:, _STEPS - 1], np.multiply.outer(ratios[:, 0], _STEPS))
-    whole = np.maximum(np.ceil(orders), 0.0)
-    each = np.exp(np.minimum(ratios, _LARGE)) / (_STEPS + 1.0)
+    ratios = np.maximum(ratios[:, :, _STEPS - 1], ratios[:, :, :1] * _STEPS)
+    truncation = np.exp(np.minimum(ratios, _LARGE)) / (_STEPS + 1.0)
     # Differences and integral err with opposite signs, the integral over single samples.
-    integral = (whole - orders) * each[:, 0] * float(stride) ** -INTEGRAL_STEPS
-    truncation = np.abs(whole[:, None] * each - integral[:, None])
-    noise = measured.noise * gains * np.exp(np.minimum(-derived[:, 0], _LARGE))
-    noise *= float(stride) ** orders
-    return np.stack([truncation.max(axis=0), noise.max(axis=1)])
+    whole = np.maximum(np.ceil(orders), 0.0)
+    fine = np.array(strides, dtype=np.float64)[:, None]
+    integral = (whole - orders) * fine**-INTEGRAL_STEPS * truncation[:, :, 0]
+    truncation = np.abs(whole[:, None] * truncation - integral[:, :, None])
+    gains = noise_gains(orders, strides)[:, :, _STEPS - 1]
+    noise = rough.noise * fine**orders * np.exp(np.minimum(-derived, _LARGE))
+    return np.asarray(np.hypot(truncation, noise[:, :, None] * gains).max(axis=1))

@@ -10,6 +10,7 @@ import numpy as np
 import scipy.fft
 from scipy.special import rgamma
 
+from models.fractional.blocks import blocks
 from models.fractional.orders import Array
 
 INTEGRAL_STEPS = 6
@@ -132,9 +133,8 @@ def convolution_weights(orders: Array, count: int, p: int) -> Array:
         weights[k, p * int(orders[k]) + 1 : head] = 0.0
     if count > head:
         terms = symbol_series(orders, p) * rgamma(-orders[:, None] - np.arange(_TERMS))
-        edges = [head, min(count, 16 * head), count]
-        for start, stop in zip(edges[:-1], edges[1:], strict=True):
-            _fill_tail(weights[:, start:stop], orders, terms, start)
+        for part in blocks(head, count):
+            _fill_tail(weights[:, part], orders, terms, part.start)
     return weights
 
 
@@ -151,8 +151,6 @@ def _smooth_factor(orders: Array, p: int) -> Array:
 
 def _fill_tail(out: Array, orders: Array, series: Array, start: int) -> None:
     """Write sum_j series_j n^(-order-1-j) for n = start, start + 1, ... into `out`."""
-    if out.shape[1] == 0:
-        return
     n = np.arange(start, start + out.shape[1], dtype=np.float64)
     logarithm = np.log(n)
     inverse = 1.0 / n
