@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import rgamma
 
-from models.fractional.convolution import convolve, padded_length, weight_spectra
+from models.fractional.convolution import convolve, weight_spectra
 from models.fractional.correction import POWERS, end_corrections, head_corrections
 from models.fractional.differences import (
     Split,
@@ -80,16 +80,16 @@ def causal_derivative(
         starts = [[fit_start(row)] for row in x]
     split = split_orders(orders)
     scales = dt**-orders
-    sources = np.zeros((len(split.wholes), records, padded_length(samples)))
+    sources = np.empty((len(split.wholes), records, samples))
     for source, whole in zip(sources, split.wholes, strict=True):
         for into, row, its in zip(source, x, starts, strict=True):
-            whole_derivative(row, its, whole, steps, stride, out=into[:samples])
+            whole_derivative(row, its, whole, steps, stride, out=into)
             for start in its:
                 ends = taylor(start, whole) @ end_corrections(start.offset)
                 part = into[start.first : min(start.first + ends.size, samples)]
                 part += ends[: part.size]
     spectra = _spectra(split.rest, samples, INTEGRAL_STEPS)
-    out = convolve(sources, split.choice, spectra, scales, samples)
+    out = convolve(sources, split.choice, spectra, scales)
     for r, its in enumerate(starts):
         for start in its:
             heads = start_corrections(start, split)
@@ -126,7 +126,7 @@ def weighted_sum(x: Array, orders: Array, dt: float) -> Array:
         [[backward_difference(row, whole, 1, 1) for row in x] for whole in split.wholes]
     )
     spectra = _spectra(split.rest, x.shape[1], 1)
-    return convolve(sources, split.choice, spectra, dt**-orders, x.shape[1])
+    return convolve(sources, split.choice, spectra, dt**-orders)
 
 
 def taylor(start: Start, whole: int) -> Array:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from scipy.special import bernoulli, comb, factorial, rgamma
 
 from models.fractional.orders import Array
@@ -81,12 +80,11 @@ def head_corrections(orders: tuple[float, ...], offset: float = 0.0) -> Array:
     sequences = n ** np.arange(POWERS)[:, None]
     sequences[:, :MOMENTS] += end_corrections(offset)
     weights = convolution_weights(np.array(orders), HEAD_SAMPLES, INTEGRAL_STEPS)
-    # (K, n, m) weight n - m, zero before the first: a view, convolution by plain sums.
-    padded = np.pad(weights, ((0, 0), (HEAD_SAMPLES - 1, 0)))
-    causal = sliding_window_view(padded, HEAD_SAMPLES, axis=1)[:, :, ::-1]
     alpha = np.array(orders)[:, None, None]
     q = np.arange(POWERS)[None, :, None]
-    wanted = factorial(q) * n ** (q - alpha) * rgamma(q + 1.0 - alpha)
-    rest: Array = wanted - np.swapaxes(causal @ sequences.T, 1, 2)
+    rest: Array = factorial(q) * n ** (q - alpha) * rgamma(q + 1.0 - alpha)
+    for own, row in zip(rest, weights, strict=True):
+        for power, sequence in zip(own, sequences, strict=True):
+            power -= np.convolve(row, sequence)[:HEAD_SAMPLES]
     rest.setflags(write=False)
     return rest
