@@ -9,10 +9,10 @@ import numpy as np
 
 from models.fractional.band_limit import noise_cutoff
 from models.fractional.harmonics import HarmonicFit, fit_harmonics
-from models.fractional.kinks import find_starts
+from models.fractional.kinks import find_kinks
 from models.fractional.noise import Roughness, roughness
 from models.fractional.orders import Array
-from models.fractional.quadrature import best_quadrature
+from models.fractional.quadrature import Quadrature, best_quadrature
 from models.fractional.spectral import TRANSITION
 from models.fractional.start import Start, fit_start
 
@@ -63,8 +63,7 @@ def choose_causal(rows: Array, orders: Array, dt: float) -> Choice:
     >>> choose_causal(x[None], np.array([0.5]), 1.0).scheme
     'bdf6'
     """
-    starts = tuple(find_starts(row) for row in rows)
-    best = best_quadrature(rows, orders, starts)
+    best, starts = _quadrature(rows, orders)
     causal = Choice(best.scheme, best.stride, starts=starts)
     if best.error <= _FIT_ABOVE or rows.shape[1] < 32:
         return causal
@@ -76,6 +75,20 @@ def choose_causal(rows: Array, orders: Array, dt: float) -> Choice:
     cutoff = noise_cutoff(rows, dt, float(orders.max()))
     low = TRANSITION * cutoff * dt < 0.5
     return Choice("band-limited", cutoff=cutoff) if low else causal
+
+
+def _quadrature(
+    rows: Array, orders: Array
+) -> tuple[Quadrature, tuple[tuple[Start, ...], ...]]:
+    """Return the quadrature for records without their kinks, and all starts.
+
+    A stride that suits the record with its kinks is one that sees them.
+    """
+    smooth = tuple((fit_start(row),) for row in rows)
+    best = best_quadrature(rows, orders, smooth)
+    kinks = [find_kinks(row, best.stride) for row in rows]
+    starts = tuple((*own, *more) for own, more in zip(smooth, kinks, strict=True))
+    return (best_quadrature(rows, orders, starts) if any(kinks) else best), starts
 
 
 def choose_clean(rows: Array, orders: Array) -> Choice:

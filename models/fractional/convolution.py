@@ -208,15 +208,14 @@ def convolve(
         products = transformed[0, 0]
         if len(jobs) * len(sources) * records > 1:
             products = np.empty_like(products)
-        total, term = np.empty((2, length // 2 + 1), dtype=np.complex128)
+        term = np.empty_like(products[0])
         for spectrum, k, r in share:
             parts = transformed[choice[k], r]
             for i in range(_PARTS - 1, -1, -1):
-                np.multiply(spectrum[i], parts[0], out=total)
-                for j in range(1, i + 1):
+                np.multiply(spectrum[0], parts[i], out=products[i])
+                for j in range(i):
                     np.multiply(spectrum[i - j], parts[j], out=term)
-                    total += term
-                products[i] = total
+                    products[i] += term
             values = scipy.fft.irfft(products, n=length, axis=-1, workers=1)
             for row, place in zip(values, places, strict=True):
                 np.multiply(row[: place.stop - place.start], scales[k], out=out[k, r, place])

@@ -53,9 +53,11 @@ def derivative(
         the Riemann-Liouville derivative as dt falls. Weyl acts from minus infinity: steady
         state.
     scheme : str, optional
-        How. "auto" chooses by noise and kind of record, and treats kinks apart.
-        Causal kinds: "bdf2" to "bdf6" (order of convergence by name, with starting
-        correction), "gl" (the same of order 1), "l1" (Caputo, orders in (0, 1)), "harmonics" or
+        How. "auto" chooses by noise and kind of record, takes differences over a stride where
+        samples lie so close that rounding or noise would spoil them, and treats kinks apart.
+        Causal kinds: "bdf2" to "bdf6" (whole derivatives by backward differences of that order
+        of convergence, then a fractional integral of order 6, with starting correction), "gl"
+        (the same with differences of order 1), "l1" (Caputo, orders in (0, 1)), "harmonics" or
         "band-limited" (the record replaced by its fit, or low-passed, first). Weyl: "spectral"
         (whole periods), "harmonics" (a sine test, cycles whole or not), "band-limited"
         (anything else).

@@ -19,9 +19,11 @@ _ROOM = 3 * DEGREE
 # What continuous derivatives may leave at the kink, over its first jump.
 _CONTINUOUS = 1e-2
 _SMOOTHEST = 5
+# Of a position in samples: no better known, and a kink at a sample shall lie there.
+_DIGITS = 3
 
 
-def find_kinks(x: Array) -> tuple[Start, ...]:
+def find_kinks(x: Array, stride: int = 1) -> tuple[Start, ...]:
     """Find where derivatives of a smooth record jump.
 
     High differences of a smooth record are small; over a kink they stand out for six samples.
@@ -31,6 +33,9 @@ def find_kinks(x: Array) -> tuple[Start, ...]:
     Parameters
     ----------
     x : ndarray, shape (N,)
+    stride : int, optional
+        Samples from one point of the differences to the next: a long one sees kinks that
+        rounding or noise hide from neighbouring samples.
 
     Returns
     -------
@@ -44,12 +49,14 @@ def find_kinks(x: Array) -> tuple[Start, ...]:
     >>> [round(kink.position, 3) for kink in kinks]
     [1000.35]
     """
-    spans = _outstanding(x)
+    thinned = _outstanding(x[::stride])
+    spans = [(stride * before, stride * after) for before, after in thinned]
+    room = stride * _ROOM
     found = []
     for i, (before, after) in enumerate(spans):
         first = spans[i - 1][1] if i else 0
         last = spans[i + 1][0] if i + 1 < len(spans) else x.size - 1
-        if before - first < _ROOM or last - after < _ROOM:
+        if before - first < room or last - after < room:
             continue
         kink = _between(x[first : before + 1], x[after : last + 1], before, after)
         if kink is not None and kink.position + MOMENTS + 1 < x.size:
@@ -57,7 +64,7 @@ def find_kinks(x: Array) -> tuple[Start, ...]:
     return tuple(found)
 
 
-def find_starts(x: Array) -> tuple[Start, ...]:
+def find_starts(x: Array, stride: int = 1) -> tuple[Start, ...]:
     """Return the start at the first sample and that at each kink.
 
     Examples
@@ -67,7 +74,7 @@ def find_starts(x: Array) -> tuple[Start, ...]:
     >>> [start.first for start in starts]
     [0, 1001]
     """
-    return (fit_start(x), *find_kinks(x))
+    return (fit_start(x), *find_kinks(x, stride))
 
 
 def _outstanding(x: Array) -> list[tuple[int, int]]:
@@ -110,9 +117,10 @@ def _between(left: Array, right: Array, before: int, after: int) -> Start | None
     motion = Polynomial(fit.motion)(Polynomial([-half, 1.0]))
     jump = motion - Polynomial(backwards)(Polynomial([half, 1.0]))
     for m in range(_SMOOTHEST, 0, -1):
-        place = _nearest_root(jump.deriv(m - 1), half + 1.0)
-        if place is None:
+        root = _nearest_root(jump.deriv(m - 1), half + 1.0)
+        if root is None:
             continue
+        place = round(middle + root, _DIGITS) - middle
         jumps = _taylor(jump, place)
         if np.max(np.abs(jumps[:m]), initial=0.0) <= _CONTINUOUS * abs(jumps[m]):
             jumps[:m] = 0.0

@@ -12,8 +12,8 @@ from models.fractional.blocks import blocks
 from models.fractional.orders import Array
 
 _HIGHEST = 10
-_RUNS = 32
-_RUN_SAMPLES = 64
+# Strides from here on see every point that they leave of a record.
+_WHOLE_FROM = 16
 _BLOCKS = 8
 _BLOCK_SAMPLES = 512
 _FEWEST = 24
@@ -75,53 +75,50 @@ def roughness(x: Array) -> Roughness:
 
 
 def smooth_differences(
-    x: Array, noise: float, strides: Sequence[int], *, highest: int, breaks: Sequence[int] = ()
+    pieces: Sequence[Array], noise: float, *, highest: int, stride: int
 ) -> Array:
-    """Return the rms of differences over strides, less what white noise adds.
-
-    They are taken from runs of samples spread evenly over the record.
+    """Return the rms of differences over a stride, less what white noise adds.
 
     Parameters
     ----------
-    x : ndarray, shape (N,)
+    pieces : sequence of ndarrays, shape (n_i,)
+        The stretches of a record between its kinks. What a long stride leaves of them counts
+        whole, of short strides a part that is spread evenly.
     noise : float
         Standard deviation of the white part.
-    strides : sequence of S int
-        Samples from one point of a difference to the next, ascending.
     highest : int
-    breaks : sequence of int, optional
-        First samples behind kinks: runs that hold one do not count, unless all do.
+    stride : int
+        Samples from one point of a difference to the next.
 
     Returns
     -------
-    ndarray, shape (S, highest)
-        First to highest differences; the highest that the record is long enough for stands for
+    ndarray, shape (highest,)
+        First to highest differences; the highest that a piece is long enough for stands for
         those above it.
 
     Examples
     --------
     >>> t = np.arange(100.0)
-    >>> smooth_differences(t**2, 0.0, [1, 5], highest=3)[:, 1:]
-    array([[ 2.,  0.],
-           [50.,  0.]])
+    >>> smooth_differences([t**2], 0.0, highest=3, stride=5)[1:]
+    array([50.,  0.])
     """
-    steps = np.array(strides)[:, None]
-    count = min(_RUN_SAMPLES, (x.size - 1) // strides[-1] + 1)
-    spans = (count - 1) * steps
-    firsts = ((x.size - 1 - spans) * np.linspace(0.0, 1.0, _RUNS)).astype(np.intp)
-    crossed = np.zeros(firsts.shape, dtype=bool)
-    for at in breaks:
-        crossed |= (firsts < at) & (at <= firsts + spans)
-    counted = ~crossed | crossed.all(axis=1, keepdims=True)
-    shares = counted / counted.sum(axis=1, keepdims=True)
-    differences = x[firsts[:, :, None] + steps[:, :, None] * np.arange(count)]
-    sizes = []
-    for d in range(1, min(highest, count - 1) + 1):
-        differences = differences[:, :, 1:] - differences[:, :, :-1]
-        squares = np.einsum("srn,srn->sr", differences, differences) / (count - d)
-        added = _UNEVEN * noise**2 * math.comb(2 * d, d)
-        sizes.append(np.sqrt(np.clip((squares * shares).sum(axis=1) - added, 0.0, None)))
-    return np.stack(sizes + sizes[-1:] * (highest - len(sizes)), axis=1)
+    squares, counts = [0.0] * highest, [0] * highest
+    for piece in pieces:
+        thinned = piece[::stride]
+        most = max(piece.size // _WHOLE_FROM, _BLOCKS * _BLOCK_SAMPLES)
+        few = thinned.size <= most
+        differences = thinned[None] if few else _blocks(thinned, most // _BLOCKS)
+        for d in range(min(highest, differences.shape[1] - 1)):
+            differences = differences[:, 1:] - differences[:, :-1]
+            flat = differences.ravel()
+            squares[d] += float(flat @ flat)
+            counts[d] += flat.size
+    sizes = [
+        math.sqrt(max(total / count - _UNEVEN * noise**2 * math.comb(2 * d, d), 0.0))
+        for d, (total, count) in enumerate(zip(squares, counts, strict=True), start=1)
+        if count
+    ]
+    return np.array(sizes + sizes[-1:] * (highest - len(sizes)))
 
 
 def _blocks(x: Array, samples: int) -> Array:

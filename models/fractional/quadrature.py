@@ -123,8 +123,10 @@ def _errors(
     """Relative rms errors of the worst order by truncation and noise, (S, 5)."""
     rough = roughness(row)
     highest = int(_STEPS[0]) + 2
-    breaks = [start.first for start in starts[1:]]
-    differences = smooth_differences(row, rough.noise, strides, highest=highest, breaks=breaks)
+    pieces = np.split(row, [start.first for start in starts[1:]])
+    differences = [
+        smooth_differences(pieces, rough.noise, highest=highest, stride=s) for s in strides
+    ]
     # Logarithms of the sizes of the record and its differences, (S, 9).
     sizes = np.concatenate([np.full((len(strides), 1), rough.size), differences], axis=1)
     sizes = np.log(np.maximum(sizes, 1e-300))

@@ -18,6 +18,8 @@ DEGREE = 8
 _NODES = 256
 _SHORTEST = 2 * (DEGREE + 1)
 LONGEST = 32768
+# Share of a residual in which neighbours may agree by rounding alone, that of time included.
+_ROUNDING_TOGETHER = 0.5
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,8 @@ def fit_start(x: Array) -> Start:
         spare = max(nodes.size - modes.size, 1)
         variance = float(residual @ residual) / spare
         together = float(residual[1:] @ residual[:-1]) / spare
-        truncation = max(together - 2.0 * variance / np.sqrt(spare), 0.0)
+        by_chance = max(_ROUNDING_TOGETHER, 2.0 / np.sqrt(spare)) * variance
+        truncation = max(together - by_chance, 0.0)
         judged = np.sqrt(truncation + max(variance, floor**2) / nodes.size) / width
         if judged <= best:
             best = judged
