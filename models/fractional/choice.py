@@ -82,13 +82,18 @@ def _quadrature(
 ) -> tuple[Quadrature, tuple[tuple[Start, ...], ...]]:
     """Return the quadrature for records without their kinks, and all starts.
 
-    A stride that suits the record with its kinks is one that sees them.
+    A stride that suits the record with its kinks is one that sees them. They are treated apart
+    where that helps.
     """
     smooth = tuple((fit_start(row),) for row in rows)
     best = best_quadrature(rows, orders, smooth)
     kinks = [find_kinks(row, best.stride) for row in rows]
     starts = tuple((*own, *more) for own, more in zip(smooth, kinks, strict=True))
-    return (best_quadrature(rows, orders, starts) if any(kinks) else best), starts
+    if any(kinks):
+        apart = best_quadrature(rows, orders, starts)
+        if apart.error < best.error:
+            return apart, starts
+    return best, smooth
 
 
 def choose_clean(rows: Array, orders: Array) -> Choice:

@@ -286,7 +286,7 @@ def _noise(task: _Task, choice: Choice, out: Array) -> Array:
     """Relative rms error, (K,), that the noise of the samples makes."""
     level = max(roughness(row).noise for row in task.rows)
     steps = BDF_STEPS.get(choice.scheme, 2)
-    gains = noise_gains(task.orders, [choice.stride])[0, :, steps - 1]
+    gains = noise_gains(task.orders, choice.stride)[:, steps - 1]
     noise = level * gains * task.dt**-task.orders
     size = np.sqrt(np.mean(out**2, axis=(1, 2)))
     return np.asarray(noise / np.maximum(size, 1e-300))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import NDArray
 
 from models.fractional.blocks import blocks
 from models.fractional.correction import MOMENTS
@@ -19,6 +21,8 @@ _ROOM = 3 * DEGREE
 # What continuous derivatives may leave at the kink, over its first jump.
 _CONTINUOUS = 1e-2
 _SMOOTHEST = 5
+# What a kink leaves of the differences that stand out, at most.
+_LEFT = 0.1
 # Of a position in samples: no better known, and a kink at a sample shall lie there.
 _DIGITS = 3
 
@@ -59,7 +63,10 @@ def find_kinks(x: Array, stride: int = 1) -> tuple[Start, ...]:
         if before - first < room or last - after < room:
             continue
         kink = _between(x[first : before + 1], x[after : last + 1], before, after)
-        if kink is not None and kink.position + MOMENTS + 1 < x.size:
+        if kink is None or kink.position + MOMENTS + 1 >= x.size:
+            continue
+        around = np.arange(before - room // 2, after + room // 2, stride)
+        if _explains(kink, x[around], around):
             found.append(kink)
     return tuple(found)
 
@@ -126,6 +133,14 @@ def _between(left: Array, right: Array, before: int, after: int) -> Start | None
             jumps[:m] = 0.0
             return Start(middle + place, _taylor(motion, place), jumps, fit.width)
     return None
+
+
+def _explains(kink: Start, x: Array, n: NDArray[np.intp]) -> bool:
+    """Whether the samples are smooth but for the kink."""
+    behind = np.clip(n - kink.position, 0.0, None)
+    left = x - polyval(behind, kink.jumps) * (behind > 0.0)
+    with_it, without = (np.max(np.abs(np.diff(y, n=_DIFFERENCES))) for y in (x, left))
+    return bool(without < _LEFT * with_it)
 
 
 def _taylor(polynomial: Polynomial, place: float) -> Array:

@@ -8,18 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from models.fractional.blocks import blocks
+from models.fractional.blocks import BLOCK, blocks
 from models.fractional.orders import Array
 
 _HIGHEST = 10
-# Strides from here on see every point that they leave of a record.
-_WHOLE_FROM = 16
 _BLOCKS = 8
 _BLOCK_SAMPLES = 512
 _FEWEST = 24
-# Noise may be so much stronger here and there. Truncation hidden below that is no larger than
-# the error that the noise makes itself.
-_UNEVEN = 4.0
+_GRAIN = 16
 
 
 @dataclass(frozen=True)
@@ -75,20 +71,22 @@ def roughness(x: Array) -> Roughness:
 
 
 def smooth_differences(
-    pieces: Sequence[Array], noise: float, *, highest: int, stride: int
+    pieces: Sequence[Array], noise: float, *, highest: int, stride: int, uneven: float = 2.0
 ) -> Array:
     """Return the rms of differences over a stride, less what white noise adds.
 
     Parameters
     ----------
     pieces : sequence of ndarrays, shape (n_i,)
-        The stretches of a record between its kinks. What a long stride leaves of them counts
-        whole, of short strides a part that is spread evenly.
+        The stretches of a record between its kinks.
     noise : float
         Standard deviation of the white part.
     highest : int
     stride : int
-        Samples from one point of a difference to the next.
+        Samples from one point of a difference to the next, a power of two.
+    uneven : float, optional
+        How many times as strong the noise may be in places. Truncation that is hidden below
+        twice the noise is no larger than the error that the noise makes itself.
 
     Returns
     -------
@@ -99,22 +97,23 @@ def smooth_differences(
     Examples
     --------
     >>> t = np.arange(100.0)
-    >>> smooth_differences([t**2], 0.0, highest=3, stride=5)[1:]
-    array([50.,  0.])
+    >>> smooth_differences([t**2], 0.0, highest=3, stride=4)[1:]
+    array([32.,  0.])
     """
+    # Where a long stride starts is seen at every 16th sample: pulses do not fall between.
+    grain = min(stride, _GRAIN)
+    lag = stride // grain
     squares, counts = [0.0] * highest, [0] * highest
     for piece in pieces:
-        thinned = piece[::stride]
-        most = max(piece.size // _WHOLE_FROM, _BLOCKS * _BLOCK_SAMPLES)
-        few = thinned.size <= most
-        differences = thinned[None] if few else _blocks(thinned, most // _BLOCKS)
-        for d in range(min(highest, differences.shape[1] - 1)):
-            differences = differences[:, 1:] - differences[:, :-1]
-            flat = differences.ravel()
-            squares[d] += float(flat @ flat)
-            counts[d] += flat.size
+        thinned = piece[::grain]
+        for part in blocks(0, thinned.size, max(BLOCK, 4 * highest * lag)):
+            differences = thinned[part]
+            for d in range(min(highest, (differences.size - 1) // lag)):
+                differences = differences[lag:] - differences[:-lag]
+                squares[d] += float(differences @ differences)
+                counts[d] += differences.size
     sizes = [
-        math.sqrt(max(total / count - _UNEVEN * noise**2 * math.comb(2 * d, d), 0.0))
+        math.sqrt(max(total / count - (uneven * noise) ** 2 * math.comb(2 * d, d), 0.0))
         for d, (total, count) in enumerate(zip(squares, counts, strict=True), start=1)
         if count
     ]

@@ -18,6 +18,12 @@ from models.fractional.weights import BDF_STEPS, INTEGRAL_STEPS, convolution_wei
 _SCHEMES = ("bdf6", "bdf5", "bdf4", "bdf3", "bdf2")
 _STEPS = np.array([BDF_STEPS[name] for name in _SCHEMES])
 _NORM_WEIGHTS = 64
+# Differences up to this one are needed, for the second derivative by six steps.
+_HIGHEST = 8
+# Truncation below which differences are sure to see the motion.
+_RESOLVED = 0.1
+# Times the noise, so that noise which is uneven does not count as motion.
+_PLAIN = 4.0
 # Points that a stride leaves of a record, at least.
 _RUN = 16
 # Logarithm of a ratio that is hopeless, still far from overflow.
@@ -36,7 +42,7 @@ class Quadrature:
     """Relative rms error of the worst order and record."""
 
 
-def noise_gains(orders: Array, strides: Sequence[int]) -> Array:
+def noise_gains(orders: Array, stride: int) -> Array:
     r"""Rms of the derivative of white noise of unit size, per sample^order.
 
     With stride 1 that is the norm of the weights of differences and integral together. A stride
@@ -46,22 +52,22 @@ def noise_gains(orders: Array, strides: Sequence[int]) -> Array:
     Parameters
     ----------
     orders : ndarray, shape (K,)
-    strides : sequence of S int
+    stride : int
 
     Returns
     -------
-    ndarray, shape (S, K, 6)
+    ndarray, shape (K, 6)
         For 1 to 6 steps.
 
     Examples
     --------
-    >>> noise_gains(np.array([1.0]), [1, 10])[:, 0, 0].round(4)
-    array([1.4142, 0.1414])
+    >>> noise_gains(np.array([1.0]), 10)[0, 0].round(4)
+    np.float64(0.1414)
     """
     whole = np.maximum(np.ceil(orders), 0.0)
     powers = np.minimum(whole, np.abs(orders + 0.5))
-    slower = np.array(strides, dtype=np.float64)[:, None] ** -powers
-    return np.asarray(slower[:, :, None] * _norms(tuple(orders.tolist())))
+    slower = float(stride) ** -powers
+    return np.asarray(slower[:, None] * _norms(tuple(orders.tolist())))
 
 
 @functools.lru_cache(maxsize=64)
@@ -106,47 +112,83 @@ def best_quadrature(
     width = min(start.width for its in starts for start in its)
     most = max(int(np.ceil(orders.max())), 0)
     longest = min(width // reach(most, _STEPS[-1], 1), rows.shape[1] // _RUN) if most else 1
-    strides = [1]
-    while 2 * strides[-1] <= longest:
-        strides.append(2 * strides[-1])
-    each = [_errors(row, its, orders, strides) for row, its in zip(rows, starts, strict=True)]
-    errors = np.max(each, axis=0)
-    for s, stride in enumerate(strides[1:], start=1):
-        errors[s, most * stride * _STEPS > width] = np.inf
-    s, scheme = divmod(int(np.argmin(errors)), len(_SCHEMES))
-    return Quadrature(_SCHEMES[scheme], strides[s], float(errors[s, scheme]))
+    measured = [_measure(row, its) for row, its in zip(rows, starts, strict=True)]
+    best = Quadrature(_SCHEMES[-1], 1, np.inf)
+    # From long strides, which are soon seen through, to where noise alone makes shorter ones
+    # worse.
+    for doublings in range(int(longest).bit_length() - 1, -1, -1):
+        stride = 2**doublings
+        each = [_errors(m, orders, stride) for m in measured]
+        truncation, noise = np.max(each, axis=0)
+        errors = np.hypot(truncation, noise)
+        if stride > 1:
+            errors[most * stride * _STEPS > width] = np.inf
+        scheme = int(np.argmin(errors))
+        if errors[scheme] < best.error:
+            best = Quadrature(_SCHEMES[scheme], stride, float(errors[scheme]))
+        elif noise[scheme] > truncation[scheme] and truncation[scheme] < _RESOLVED:
+            break
+    return best
 
 
-def _errors(
-    row: Array, starts: Sequence[Start], orders: Array, strides: Sequence[int]
-) -> Array:
-    """Relative rms errors of the worst order by truncation and noise, (S, 5)."""
+@dataclass(frozen=True)
+class _Measured:
+    """What the errors of a quadrature follow from."""
+
+    pieces: list[Array]
+    """Stretches of the record between its kinks."""
+    size: float
+    """rms about the mean."""
+    noise: float
+    """Standard deviation of the white part."""
+    plain: Array
+    """(8,) rms of differences of neighbouring samples where it is plainly above the noise."""
+
+
+def _measure(row: Array, starts: Sequence[Start]) -> _Measured:
     rough = roughness(row)
-    highest = int(_STEPS[0]) + 2
     pieces = np.split(row, [start.first for start in starts[1:]])
-    differences = [
-        smooth_differences(pieces, rough.noise, highest=highest, stride=s) for s in strides
-    ]
-    # Logarithms of the sizes of the record and its differences, (S, 9).
-    sizes = np.concatenate([np.full((len(strides), 1), rough.size), differences], axis=1)
-    sizes = np.log(np.maximum(sizes, 1e-300))
-    # And of those of fractional orders between them, (S, K, 7).
-    below = np.where(orders > 1.0, 1, 0)
-    higher = below[:, None] + np.arange(_STEPS[0] + 1)
-    part = (orders - below)[:, None]
-    between = (1.0 - part) * sizes[:, higher] + part * sizes[:, higher + 1]
-    # A ramp has no second derivative: there, as if the record had one frequency.
-    single = (1.0 - orders) * sizes[:, :1] + orders * sizes[:, 1:2]
-    derived = np.maximum(between[:, :, 0], single)
-    ratios = between[:, :, 1:] - derived[:, :, None]
+    plain = smooth_differences(pieces, rough.noise, highest=_HIGHEST, stride=1, uneven=_PLAIN)
+    return _Measured(pieces, rough.size, rough.noise, plain)
+
+
+def _errors(measured: _Measured, orders: Array, stride: int) -> Array:
+    """Relative rms errors of the worst order by truncation and noise, (2, 5)."""
+    differences = smooth_differences(
+        measured.pieces, measured.noise, highest=_HIGHEST, stride=stride
+    )
+    seen = _between(np.concatenate([[measured.size], differences]), orders)
+    # A pulse may lie between the points of a long stride: it makes no more than this.
+    powers = np.arange(1, _HIGHEST + 1)
+    differences = np.maximum(differences, measured.plain * float(stride) ** powers)
+    most = _between(np.concatenate([[measured.size], differences]), orders)
+    ratios = most[:, 1:] - seen[:, :1]
     # The second holds for what is smooth but for its start, as a ramp is.
-    ratios = np.maximum(ratios[:, :, _STEPS - 1], ratios[:, :, :1] * _STEPS)
+    ratios = np.maximum(ratios[:, _STEPS - 1], ratios[:, :1] * _STEPS)
     truncation = np.exp(np.minimum(ratios, _LARGE)) / (_STEPS + 1.0)
     # Differences and integral err with opposite signs, the integral over single samples.
-    whole = np.maximum(np.ceil(orders), 0.0)
-    fine = np.array(strides, dtype=np.float64)[:, None]
-    integral = (whole - orders) * fine**-INTEGRAL_STEPS * truncation[:, :, 0]
-    truncation = np.abs(whole[:, None] * truncation - integral[:, :, None])
-    gains = noise_gains(orders, strides)[:, :, _STEPS - 1]
-    noise = rough.noise * fine**orders * np.exp(np.minimum(-derived, _LARGE))
-    return np.asarray(np.hypot(truncation, noise[:, :, None] * gains).max(axis=1))
+    whole = np.maximum(np.ceil(orders), 0.0)[:, None]
+    integral = (whole - orders[:, None]) * truncation[:, :1] * float(stride) ** -INTEGRAL_STEPS
+    truncation = np.abs(whole * truncation - integral)
+    gains = noise_gains(orders, stride)[:, _STEPS - 1] * float(stride) ** orders[:, None]
+    noise = measured.noise * gains * np.exp(np.minimum(-most[:, :1], _LARGE))
+    return np.stack([truncation.max(axis=0), noise.max(axis=0)])
+
+
+def _between(sizes: Array, orders: Array) -> Array:
+    """Logarithms of sizes of differences of each order and of those 1 to 6 higher, (K, 7).
+
+    Parameters
+    ----------
+    sizes : ndarray, shape (9,)
+        Of the record and its whole differences.
+    orders : ndarray, shape (K,)
+    """
+    logs = np.log(np.maximum(sizes, 1e-300))
+    below = np.where(orders > 1.0, 1, 0)[:, None] + np.arange(_STEPS[0] + 1)
+    part = orders[:, None] - below[:, :1]
+    between = (1.0 - part) * logs[below] + part * logs[below + 1]
+    # A ramp has no second derivative: there, as if the record had one frequency.
+    single = (1.0 - orders) * logs[0] + orders * logs[1]
+    between[:, 0] = np.maximum(between[:, 0], single)
+    return np.asarray(between)

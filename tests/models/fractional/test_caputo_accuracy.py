@@ -133,3 +133,20 @@ def test_many_cycles_lose_no_digits(order):
     cycle = np.sin(OMEGA * t[:1000])
     found = derivative(np.tile(cycle, count // 1000), order, 1e-3)[chosen]
     assert errors(found, exact)[1] < 1e-8
+
+
+@pytest.mark.parametrize("order", [0.3, 1.0, 1.5, 1.9])
+@pytest.mark.parametrize("noise", [0.0, 1e-9])
+@pytest.mark.parametrize("width", [20, 200])
+def test_pulse_between_the_points_of_long_strides(width, noise, order):
+    # A Gaussian wave packet in a quiet record: all that moves takes less than a long stride.
+    count, middle = 100_000, 50_033
+    n = np.arange(count) - middle
+    packet = np.exp(-((n / width) ** 2)) * np.sin(3.0 * n / width)
+    rough = noise * np.random.default_rng(2).standard_normal(count)
+    found = derivative(packet + rough, order, 1.0)
+    # From rest the derivative from minus infinity is the same: by a padded spectrum.
+    omega = 2.0 * np.pi * np.fft.rfftfreq(4 * count)
+    spectrum = np.fft.rfft(packet, 4 * count) * (1j * omega) ** order
+    exact = np.fft.irfft(spectrum, 4 * count)[:count]
+    assert errors(found, exact)[0] < 1e-3
