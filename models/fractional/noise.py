@@ -70,23 +70,16 @@ def roughness(x: Array) -> Roughness:
     return Roughness(size, max(noise, rounding))
 
 
-def smooth_differences(
-    pieces: Sequence[Array], noise: float, *, highest: int, stride: int, uneven: float = 2.0
-) -> Array:
-    """Return the rms of differences over a stride, less what white noise adds.
+def difference_powers(pieces: Sequence[Array], *, highest: int, stride: int) -> Array:
+    """Return the mean squares of differences over a stride.
 
     Parameters
     ----------
     pieces : sequence of ndarrays, shape (n_i,)
         The stretches of a record between its kinks.
-    noise : float
-        Standard deviation of the white part.
     highest : int
     stride : int
         Samples from one point of a difference to the next, a power of two.
-    uneven : float, optional
-        How many times as strong the noise may be in places. Truncation that is hidden below
-        twice the noise is no larger than the error that the noise makes itself.
 
     Returns
     -------
@@ -97,10 +90,10 @@ def smooth_differences(
     Examples
     --------
     >>> t = np.arange(100.0)
-    >>> smooth_differences([t**2], 0.0, highest=3, stride=4)[1:]
-    array([32.,  0.])
+    >>> difference_powers([t**2], highest=3, stride=4)[1:]
+    array([1024.,    0.])
     """
-    # Where a long stride starts is seen at every 16th sample: pulses do not fall between.
+    # A long stride starts at every 16th sample: pulses do not fall between.
     grain = min(stride, _GRAIN)
     lag = stride // grain
     squares, counts = [0.0] * highest, [0] * highest
@@ -112,12 +105,31 @@ def smooth_differences(
                 differences = differences[lag:] - differences[:-lag]
                 squares[d] += float(differences @ differences)
                 counts[d] += differences.size
-    sizes = [
-        math.sqrt(max(total / count - (uneven * noise) ** 2 * math.comb(2 * d, d), 0.0))
-        for d, (total, count) in enumerate(zip(squares, counts, strict=True), start=1)
-        if count
-    ]
-    return np.array(sizes + sizes[-1:] * (highest - len(sizes)))
+    means = [total / count for total, count in zip(squares, counts, strict=True) if count]
+    return np.array(means + means[-1:] * (highest - len(means)))
+
+
+def above_noise(powers: Array, noise: float) -> Array:
+    """Return the rms of differences less what white noise adds.
+
+    Parameters
+    ----------
+    powers : ndarray, shape (D,)
+        Mean squares of the first to D-th differences.
+    noise : float
+        Standard deviation of the white part.
+
+    Returns
+    -------
+    ndarray, shape (D,)
+
+    Examples
+    --------
+    >>> above_noise(np.array([4.0, 6.0]), 1.0).round(3)
+    array([1.414, 0.   ])
+    """
+    gains = np.array([math.comb(2 * d, d) for d in range(1, powers.size + 1)])
+    return np.asarray(np.sqrt(np.maximum(powers - noise**2 * gains, 0.0)))
 
 
 def _blocks(x: Array, samples: int) -> Array:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.fractional.differences import backward_difference, reach
-from models.fractional.noise import roughness, smooth_differences
+from models.fractional.noise import above_noise, difference_powers, roughness
 from models.fractional.orders import Array
 from models.fractional.start import Start
 from models.fractional.weights import BDF_STEPS, INTEGRAL_STEPS, convolution_weights
@@ -22,8 +22,11 @@ _NORM_WEIGHTS = 64
 _HIGHEST = 8
 # Truncation below which differences are sure to see the motion.
 _RESOLVED = 0.1
-# Times the noise, so that noise which is uneven does not count as motion.
-_PLAIN = 4.0
+# Times the noise's error, below which truncation is no reason for a shorter stride: some of what
+# passes for it is noise that is uneven.
+_NOISY = 10.0
+# Motion is what stands above so many times the noise, which may be uneven.
+_PLAINLY = 4.0
 # Points that a stride leaves of a record, at least.
 _RUN = 16
 # Logarithm of a ratio that is hopeless, still far from overflow.
@@ -126,7 +129,7 @@ def best_quadrature(
         scheme = int(np.argmin(errors))
         if errors[scheme] < best.error:
             best = Quadrature(_SCHEMES[scheme], stride, float(errors[scheme]))
-        elif noise[scheme] > truncation[scheme] and truncation[scheme] < _RESOLVED:
+        elif truncation[scheme] < min(_RESOLVED, _NOISY * noise[scheme]):
             break
     return best
 
@@ -141,26 +144,28 @@ class _Measured:
     """rms about the mean."""
     noise: float
     """Standard deviation of the white part."""
-    plain: Array
-    """(8,) rms of differences of neighbouring samples where it is plainly above the noise."""
+    powers: Array
+    """(8,) mean squares of the differences of neighbouring samples."""
 
 
 def _measure(row: Array, starts: Sequence[Start]) -> _Measured:
     rough = roughness(row)
     pieces = np.split(row, [start.first for start in starts[1:]])
-    plain = smooth_differences(pieces, rough.noise, highest=_HIGHEST, stride=1, uneven=_PLAIN)
-    return _Measured(pieces, rough.size, rough.noise, plain)
+    powers = difference_powers(pieces, highest=_HIGHEST, stride=1)
+    return _Measured(pieces, rough.size, rough.noise, powers)
 
 
 def _errors(measured: _Measured, orders: Array, stride: int) -> Array:
     """Relative rms errors of the worst order by truncation and noise, (2, 5)."""
-    differences = smooth_differences(
-        measured.pieces, measured.noise, highest=_HIGHEST, stride=stride
-    )
+    powers = measured.powers
+    if stride > 1:
+        powers = difference_powers(measured.pieces, highest=_HIGHEST, stride=stride)
+    differences = above_noise(powers, measured.noise)
     seen = _between(np.concatenate([[measured.size], differences]), orders)
     # A pulse may lie between the points of a long stride: it makes no more than this.
-    powers = np.arange(1, _HIGHEST + 1)
-    differences = np.maximum(differences, measured.plain * float(stride) ** powers)
+    plain = above_noise(measured.powers, _PLAINLY * measured.noise)
+    growth = float(stride) ** np.arange(1, _HIGHEST + 1)
+    differences = np.maximum(differences, plain * growth)
     most = _between(np.concatenate([[measured.size], differences]), orders)
     ratios = most[:, 1:] - seen[:, :1]
     # The second holds for what is smooth but for its start, as a ramp is.
