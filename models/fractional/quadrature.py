@@ -114,12 +114,12 @@ def best_quadrature(
     """
     width = min(start.width for its in starts for start in its)
     most = max(int(np.ceil(orders.max())), 0)
-    longest = min(width // reach(most, _STEPS[-1], 1), rows.shape[1] // _RUN) if most else 1
+    longest = min(width // reach(most, _STEPS[-1], 1), rows.shape[1] // _RUN) if most else 0
     measured = [_measure(row, its) for row, its in zip(rows, starts, strict=True)]
     best = Quadrature(_SCHEMES[-1], 1, np.inf)
     # From long strides, which are soon seen through, to where noise alone makes shorter ones
     # worse.
-    for doublings in range(int(longest).bit_length() - 1, -1, -1):
+    for doublings in range(max(int(longest), 1).bit_length() - 1, -1, -1):
         stride = 2**doublings
         each = [_errors(m, orders, stride) for m in measured]
         truncation, noise = np.max(each, axis=0)
