@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
-from scipy.special import factorial
 
 from models.fractional.blocks import BLOCK, blocks
 from models.fractional.orders import Array
@@ -178,6 +177,4 @@ def differentiated(coefficients: Array, whole: int) -> Array:
     >>> differentiated(np.array([5.0, 4.0, 3.0]), 1)
     array([4., 6.])
     """
-    k = np.arange(coefficients.size - whole)
-    rising: Array = factorial(k + whole) / factorial(k)
-    return rising * coefficients[whole:]
+    return np.asarray(polynomial.polyder(coefficients, whole))

@@ -20,6 +20,8 @@ _STEPS = np.array([BDF_STEPS[name] for name in _SCHEMES])
 _NORM_WEIGHTS = 64
 # Differences up to this one are needed, for the second derivative by six steps.
 _HIGHEST = 8
+# Truncation below which the rounding of the transforms is all that is left.
+_ROUNDING = 1e-13
 # Truncation below which differences are sure to see the motion.
 _RESOLVED = 0.1
 # Times the noise's error, below which truncation is no reason for a shorter stride: some of what
@@ -130,6 +132,8 @@ def best_quadrature(
         if errors[scheme] < best.error:
             best = Quadrature(_SCHEMES[scheme], stride, float(errors[scheme]))
         elif truncation[scheme] < min(_RESOLVED, _NOISY * noise[scheme]):
+            break
+        if truncation[scheme] < _ROUNDING:
             break
     return best
 
