@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from dataclasses import dataclass
 
@@ -10,18 +9,18 @@ import numpy as np
 
 from models.fractional.band_limit import noise_cutoff
 from models.fractional.harmonics import HarmonicFit, fit_harmonics
-from models.fractional.kinks import Kink, find_kinks
+from models.fractional.kinks import find_kinks
 from models.fractional.noise import Roughness, roughness
 from models.fractional.orders import Array
+from models.fractional.quadrature import Quadrature, best_quadrature
 from models.fractional.spectral import TRANSITION
-from models.fractional.weights import BDF_STEPS, convolution_weights, symbol_series
+from models.fractional.start import Start, fit_start
 
 # Expected relative errors above which a fit of harmonics, or a low-pass, is tried instead.
 _FIT_ABOVE = 1e-5
 _FILTER_ABOVE = 3e-3
 # A fit explains a record where it leaves no more than this times the noise.
 _EXPLAINED = 1.25
-_NORM_WEIGHTS = 64
 _JUNCTION = 6
 
 
@@ -31,96 +30,21 @@ class Choice:
 
     scheme: str
     """"bdf2" to "bdf6", "spectral", "harmonics" or "band-limited"."""
+    stride: int = 1
+    """Samples between the points of the backward differences, for "bdf..."."""
     cutoff: float | None = None
     """Hz, where there is a low-pass."""
     fits: tuple[HarmonicFit, ...] = ()
     """One for each record, for "harmonics"."""
-    kinks: tuple[tuple[Kink, ...], ...] = ()
-    """Those of each record, where some record has any."""
-
-
-def expected_noise(measured: Roughness, orders: Array, p: int) -> Array:
-    """Relative rms error, (K,), that noise makes in a BDF scheme of `p` steps.
-
-    Examples
-    --------
-    >>> t = np.arange(2000) / 1000
-    >>> noise = 1e-4 * np.random.default_rng(0).standard_normal(t.size)
-    >>> measured = roughness(np.sin(30 * t) + noise)
-    >>> bool(expected_noise(measured, np.array([1.9]), 1)[0] > 0.1)
-    True
-    """
-    gain = _noise_gain(tuple(orders.tolist()), p)
-    return np.asarray(measured.noise * gain / _scaled_size(measured, orders))
-
-
-@functools.lru_cache(maxsize=64)
-def _noise_gain(orders: tuple[float, ...], p: int) -> Array:
-    """Rms of the derivative of white noise of unit size and sampling interval, (K,)."""
-    gain: Array = np.linalg.norm(convolution_weights(np.array(orders), _NORM_WEIGHTS, p), axis=1)
-    return gain
-
-
-def expected_truncation(measured: Roughness, orders: Array, p: int) -> Array:
-    """Relative rms error, (K,), that a BDF scheme of `p` steps makes on a smooth record.
-
-    Examples
-    --------
-    >>> measured = roughness(np.sin(0.03 * np.arange(2000)))
-    >>> bool(0.01 < expected_truncation(measured, np.array([1.5]), 1)[0] < 0.05)
-    True
-    """
-    size = max(measured.size, 1e-300)
-    # The second holds for what is smooth but for its start, as a ramp is.
-    ratio = max(measured.differences[p - 1] / size, (measured.differences[0] / size) ** p)
-    return np.asarray(np.abs(symbol_series(orders, p)[:, p]) * ratio)
-
-
-def _scaled_size(measured: Roughness, orders: Array) -> Array:
-    """Size of the derivative times dt^order, (K,), as if the record had one frequency."""
-    size = max(measured.size, 1e-300)
-    turn = max(measured.differences[0] / size, 1e-300)
-    return np.asarray(np.maximum(size * turn**orders, 1e-300))
-
-
-def best_steps(rows: Array, orders: Array) -> tuple[str, float]:
-    """Return the BDF scheme that balances truncation against noise, and its expected error.
-
-    Parameters
-    ----------
-    rows : ndarray, shape (R, N)
-    orders : ndarray, shape (K,)
-
-    Returns
-    -------
-    name : str
-        "bdf2" to "bdf6".
-    error : float
-        Relative rms error of the worst order and record.
-
-    Examples
-    --------
-    >>> best_steps(np.sin(0.05 * np.arange(1000))[None], np.array([0.5]))[0]
-    'bdf6'
-    """
-    measured = [roughness(row) for row in rows]
-    errors = {}
-    for name, p in BDF_STEPS.items():
-        if name != "gl":
-            each = [
-                np.hypot(expected_noise(m, orders, p), expected_truncation(m, orders, p))
-                for m in measured
-            ]
-            errors[name] = float(np.max(each))
-    best = min(errors, key=lambda name: errors[name])
-    return best, errors[best]
+    starts: tuple[tuple[Start, ...], ...] = ()
+    """Of each record, that of the first sample and its kinks, for "bdf..."."""
 
 
 def choose_causal(rows: Array, orders: Array, dt: float) -> Choice:
     """Choose for a derivative from the first sample on.
 
-    The number of steps balances truncation against noise, as both are seen in the record.
-    Kinks of a clean record are found and treated apart. Where noise spoils all schemes, a
+    Steps and stride of the quadrature balance truncation against noise, as both are seen in the
+    record. Kinks are found and treated apart. Where noise spoils all schemes, a
     record of few harmonics is replaced by their fit, any other one low-passed.
 
     Parameters
@@ -136,21 +60,62 @@ def choose_causal(rows: Array, orders: Array, dt: float) -> Choice:
     Examples
     --------
     >>> x = np.sin(0.001 * np.arange(20000) ** 1.2)
-    >>> choose_causal(x[None], np.array([0.5]), 1.0).scheme in BDF_STEPS
-    True
+    >>> choose_causal(x[None], np.array([0.5]), 1.0).scheme
+    'bdf6'
     """
-    name, error = best_steps(rows, orders)
-    if error <= _FIT_ABOVE or rows.shape[1] < 32:
-        kinks = tuple(find_kinks(row) for row in rows)
-        return Choice(name, kinks=kinks if any(kinks) else ())
-    best = Choice(name)
+    best, starts = _quadrature(rows, orders)
+    causal = Choice(best.scheme, best.stride, starts=starts)
+    if best.error <= _FIT_ABOVE or rows.shape[1] < 32:
+        return causal
     fits = _explaining_fits(rows, [roughness(row) for row in rows])
     if fits:
         return Choice("harmonics", fits=fits)
-    if error <= _FILTER_ABOVE:
-        return best
+    if best.error <= _FILTER_ABOVE:
+        return causal
     cutoff = noise_cutoff(rows, dt, float(orders.max()))
-    return Choice("band-limited", cutoff) if TRANSITION * cutoff * dt < 0.5 else best
+    low = TRANSITION * cutoff * dt < 0.5
+    return Choice("band-limited", cutoff=cutoff) if low else causal
+
+
+def _quadrature(
+    rows: Array, orders: Array
+) -> tuple[Quadrature, tuple[tuple[Start, ...], ...]]:
+    """Return the quadrature for records without their kinks, and all starts.
+
+    A stride that suits the record with its kinks is one that sees them. They are treated apart
+    where that helps.
+    """
+    smooth = tuple((fit_start(row),) for row in rows)
+    best = best_quadrature(rows, orders, smooth)
+    kinks = [find_kinks(row, best.stride) for row in rows]
+    starts = tuple((*own, *more) for own, more in zip(smooth, kinks, strict=True))
+    if any(kinks):
+        apart = best_quadrature(rows, orders, starts)
+        if apart.error < best.error:
+            return apart, starts
+    return best, smooth
+
+
+def choose_clean(rows: Array, orders: Array) -> Choice:
+    """Choose for a derivative from the first sample on of smoothed records.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (R, N)
+    orders : ndarray, shape (K,)
+
+    Returns
+    -------
+    Choice
+
+    Examples
+    --------
+    >>> choose_clean(np.sin(0.05 * np.arange(1000))[None], np.array([0.5])).scheme
+    'bdf6'
+    """
+    starts = tuple((fit_start(row),) for row in rows)
+    best = best_quadrature(rows, orders, starts)
+    return Choice(best.scheme, best.stride, starts=starts)
 
 
 def choose_steady(rows: Array, orders: Array, dt: float) -> Choice:
@@ -186,7 +151,7 @@ def choose_steady(rows: Array, orders: Array, dt: float) -> Choice:
     if rows.shape[1] < 16:
         return Choice("spectral")
     cutoff = noise_cutoff(rows, dt, float(orders.max()))
-    return Choice("spectral" if periodic else "band-limited", cutoff)
+    return Choice("spectral" if periodic else "band-limited", cutoff=cutoff)
 
 
 def _explaining_fits(rows: Array, measured: list[Roughness]) -> tuple[HarmonicFit, ...]:

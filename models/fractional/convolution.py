@@ -21,8 +21,7 @@ WeightMaker = Callable[[Array, int], Array]
 Item = TypeVar("Item")
 
 DEFAULT_CACHE_BYTES = 256 * 2**20
-# Rows transformed together: as many as scipy's vector registers hold; more would only spill.
-_ROWS = 2
+_PARTS = 4
 # Weights made together, and their bytes at most.
 _MADE_ROWS = 32
 _MADE_BYTES = 2**25
@@ -117,27 +116,33 @@ def weight_spectra(
 
     Returns
     -------
-    list of K ndarrays, each of shape (L // 2 + 1,), complex
+    list of K ndarrays, each of shape (4, L // 2 + 1), complex
+        Of the weights from the samples of a part of the record to those of the same part, of
+        the next one, and so on.
 
     Examples
     --------
-    >>> rows = weight_spectra("ones", np.array([0.0]), 4, lambda a, n: np.ones((a.size, n)))
-    >>> complex(rows[0][0])
-    (4+0j)
+    >>> rows = weight_spectra("ones", np.array([0.0]), 8, lambda a, n: np.ones((a.size, n)))
+    >>> rows[0][:, 0].real
+    array([2., 3., 3., 3.])
     """
-    length = padded_length(samples)
+    size = _part(samples)
+    length = padded_length(size)
     keys = [(scheme, float(order), samples) for order in orders]
     rows = [_CACHE.get(key) for key in keys]
     missing = [i for i, row in enumerate(rows) if row is None]
 
     def make(chosen: list[int]) -> Complex:
-        made: Complex = scipy.fft.rfft(
-            make_weights(orders[chosen], samples), n=length, axis=-1, workers=1
-        )
+        weights = make_weights(orders[chosen], _PARTS * size).reshape(-1, _PARTS, size)
+        kernels = np.zeros((len(chosen), _PARTS, length))
+        kernels[:, :, :size] = weights
+        # To a sample from one that lies further behind in its own part: a part less the way.
+        kernels[:, 1:, length - size + 1 :] = weights[:, :-1, 1:]
+        made: Complex = scipy.fft.rfft(kernels, axis=-1, workers=1)
         made.setflags(write=False)
         return made
 
-    together = max(2, min(_MADE_ROWS, _MADE_BYTES // (8 * samples)))
+    together = max(1, min(_MADE_ROWS, _MADE_BYTES // (8 * samples)))
     blocks = _blocks(missing, together)
     for chosen, made in zip(blocks, map_threads(make, blocks), strict=True):
         for i, row in zip(chosen, made, strict=True):
@@ -149,24 +154,24 @@ def weight_spectra(
 def convolve(
     sources: Array,
     choice: NDArray[np.intp],
-    spectra: Sequence[Complex],
+    spectra: Sequence[Complex | None],
     scales: Array,
-    samples: int,
 ) -> Array:
     """Convolve records causally with the weights of each order.
 
+    The record is cut into parts, each transformed by itself and combined with all before it:
+    short transforms stay in the processor's cache and take several parts at once.
+
     Parameters
     ----------
-    sources : ndarray, shape (V, R, N) or (V, R, L)
-        Variants of R records; padded with zeros to L already, or not.
+    sources : ndarray, shape (V, R, N)
+        Variants of R records.
     choice : ndarray of int, shape (K,)
         The variant that each order works on.
-    spectra : sequence of K ndarrays, shape (L // 2 + 1,)
-        From `weight_spectra` for N samples.
+    spectra : sequence of K ndarrays, shape (4, L // 2 + 1), or None
+        From `weight_spectra` for N samples; None leaves the records as they are.
     scales : ndarray, shape (K,)
         Factor of each order.
-    samples : int
-        N.
 
     Returns
     -------
@@ -176,27 +181,53 @@ def convolve(
     --------
     >>> rows = weight_spectra("ones", np.array([0.0]), 4, lambda a, n: np.ones((a.size, n)))
     >>> x = np.array([[[1.0, 2.0, 3.0, 4.0]]])
-    >>> convolve(x, np.array([0]), rows, np.array([1.0]), 4).round(12)
+    >>> convolve(x, np.array([0]), rows, np.array([1.0])).round(12)
     array([[[ 1.,  3.,  6., 10.]]])
     """
-    records = sources.shape[1]
-    length = padded_length(samples)
+    _, records, samples = sources.shape
+    size = _part(samples)
+    length = padded_length(size)
     out = np.empty((len(spectra), records, samples))
-    transformed = scipy.fft.rfft(sources, n=length, axis=-1)
+    jobs = []
+    for k, spectrum in enumerate(spectra):
+        if spectrum is None:
+            np.multiply(sources[choice[k]], scales[k], out=out[k])
+        else:
+            jobs += [(spectrum, k, r) for r in range(records)]
+    if not jobs:
+        return out
+    places = [slice(min(i * size, samples), min((i + 1) * size, samples)) for i in range(_PARTS)]
+    padded = np.zeros((*sources.shape[:2], _PARTS, length))
+    for i, place in enumerate(places):
+        padded[:, :, i, : place.stop - place.start] = sources[:, :, place]
+    transformed = scipy.fft.rfft(padded, axis=-1)
+    del padded
 
-    def work(share: list[tuple[int, int]]) -> None:
-        product = np.empty((_ROWS, length // 2 + 1), dtype=np.complex128)
-        for block in _blocks(share, _ROWS):
-            for row, (k, r) in zip(product, block, strict=False):
-                np.multiply(spectra[k], transformed[choice[k], r], out=row)
-            values = scipy.fft.irfft(product[: len(block)], n=length, axis=-1, workers=1)
-            for row, (k, r) in zip(values, block, strict=True):
-                np.multiply(row[:samples], scales[k], out=out[k, r])
+    def work(share: list[tuple[Complex, int, int]]) -> None:
+        # One product may overwrite what it is made of, the last part first.
+        products = transformed[0, 0]
+        if len(jobs) * len(sources) * records > 1:
+            products = np.empty_like(products)
+        term = np.empty_like(products[0])
+        for spectrum, k, r in share:
+            parts = transformed[choice[k], r]
+            for i in range(_PARTS - 1, -1, -1):
+                np.multiply(spectrum[0], parts[i], out=products[i])
+                for j in range(i):
+                    np.multiply(spectrum[i - j], parts[j], out=term)
+                    products[i] += term
+            values = scipy.fft.irfft(products, n=length, axis=-1, workers=1)
+            for row, place in zip(values, places, strict=True):
+                np.multiply(row[: place.stop - place.start], scales[k], out=out[k, r, place])
 
-    jobs = [(k, r) for k in range(len(spectra)) for r in range(records)]
-    shares = max(1, min(int(scipy.fft.get_workers()), len(jobs) // _ROWS))
+    shares = max(1, min(int(scipy.fft.get_workers()), len(jobs)))
     map_threads(work, _blocks(jobs, math.ceil(len(jobs) / shares)))
     return out
+
+
+def _part(samples: int) -> int:
+    """Return how many samples a part of a record has; the last ones may have less."""
+    return -(-samples // _PARTS)
 
 
 def _blocks(items: Sequence[Item], size: int) -> list[list[Item]]:

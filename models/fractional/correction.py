@@ -5,48 +5,45 @@ from __future__ import annotations
 import functools
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from scipy.special import bernoulli, comb, factorial, rgamma
 
 from models.fractional.orders import Array
-from models.fractional.weights import convolution_weights, symbol_series
+from models.fractional.weights import INTEGRAL_STEPS, convolution_weights
 
 POWERS = 6
 """Powers of time made exact, from t^0 on: as many as the highest order of convergence."""
 MOMENTS = 8
 """Samples at the start that carry the end correction of the sum."""
-HEAD_SAMPLES = 128
+HEAD_SAMPLES = 192
 """Samples after which nothing but the scheme's own order is left."""
 
 
 @functools.lru_cache(maxsize=64)
-def end_corrections(count: int, offset: float = 0.0) -> Array:
-    r"""Return e_k(n): what to add to the first samples of (n + u)^k, k = 0 .. count - 1.
+def end_corrections(offset: float = 0.0) -> Array:
+    r"""Return e_k(n): what to add to the first samples of (n + u)^k, k = 0 .. 5.
 
     The sum over samples :math:`\sum_n (n+u)^k e^{-(n+u)z}` differs from the integral
     :math:`k!/z^{k+1}` by :math:`\sum_j \zeta(-k-j,u)(-z)^j/j!`, which leaves errors that decay
-    only like t^(-alpha-1). Eight samples with the opposite moments remove them, for every order
+    only like a power of t. Eight samples with the opposite moments remove them, for every order
     alike: an end correction as in Gregory's rule.
 
     Parameters
     ----------
-    count : int
-        Powers.
     offset : float
         u, 0 to 1: how long before the first sample the power begins, in samples.
 
     Returns
     -------
-    ndarray, shape (count, 8)
+    ndarray, shape (6, 8)
 
     Examples
     --------
-    >>> bool(abs(end_corrections(1)[0].sum() + 0.5) < 1e-14)
+    >>> bool(abs(end_corrections()[0].sum() + 0.5) < 1e-14)
     True
     """
-    numbers = bernoulli(count + MOMENTS)
-    wanted = np.zeros((MOMENTS, count))
-    for k in range(count):
+    numbers = bernoulli(POWERS + MOMENTS)
+    wanted = np.zeros((MOMENTS, POWERS))
+    for k in range(POWERS):
         for j in range(MOMENTS):
             # zeta(-m, u) = -B_{m+1}(u) / (m + 1), with 0^0 = 1 where u = 0.
             m = k + j + 1
@@ -57,55 +54,37 @@ def end_corrections(count: int, offset: float = 0.0) -> Array:
 
 
 @functools.lru_cache(maxsize=64)
-def head_corrections(
-    orders: tuple[float, ...], p: int, count: int, offset: float = 0.0
-) -> Array:
-    r"""Return what is left to add to the first outputs for (n + u)^k, k = 0 .. count - 1.
+def head_corrections(orders: tuple[float, ...], offset: float = 0.0) -> Array:
+    r"""Return what is left to add to the first outputs for (n + u)^k, k = 0 .. 5.
 
     Parameters
     ----------
     orders : tuple of K floats
-    p : int
-        Steps of the backward difference formula.
-    count : int
+        -1 to 0: integrals.
     offset : float
         u, as for `end_corrections`.
 
     Returns
     -------
-    ndarray, shape (K, count, 128)
-        :math:`\frac{k!}{\Gamma(k+1-\alpha)}(n+u)^{k-\alpha}` less the scheme's result on
-        (n + u)^k + e_k, but for those parts of the scheme's error that are smooth from the start
-        on: they are its order of convergence, and taking them off here would leave a step
-        behind. At n + u = 0 the finite part is the exact value.
+    ndarray, shape (K, 6, 192)
+        :math:`\frac{k!}{\Gamma(k+1-\alpha)}(n+u)^{k-\alpha}` less the result of the
+        weights on (n + u)^k + e_k.
 
     Examples
     --------
-    >>> rest = head_corrections((0.5,), 6, 6)
-    >>> bool(np.max(np.abs(rest[0, :2, -1])) < 1e-11)
+    >>> rest = head_corrections((-0.5,))
+    >>> bool(np.max(np.abs(rest[0, :2, -1])) < 1e-10)
     True
     """
     n = np.arange(HEAD_SAMPLES) + offset
-    sequences = n ** np.arange(count)[:, None]
-    sequences[:, :MOMENTS] += end_corrections(count, offset)
-    weights = convolution_weights(np.array(orders), HEAD_SAMPLES, p)
-    # (K, n, m) weight n - m, zero before the first: a view, convolution by plain sums.
-    padded = np.pad(weights, ((0, 0), (HEAD_SAMPLES - 1, 0)))
-    causal = sliding_window_view(padded, HEAD_SAMPLES, axis=1)[:, :, ::-1]
+    sequences = n ** np.arange(POWERS)[:, None]
+    sequences[:, :MOMENTS] += end_corrections(offset)
+    weights = convolution_weights(np.array(orders), HEAD_SAMPLES, INTEGRAL_STEPS)
     alpha = np.array(orders)[:, None, None]
-    q = np.arange(count)[None, :, None]
-    # Derivatives of n^q / q!, at n = 0 their finite part.
-    single = np.where(n > 0.0, n, 1.0) ** (q - alpha) * rgamma(q + 1.0 - alpha)
-    if offset == 0.0:
-        single[:, :, 0] = (alpha == q)[:, :, 0]
-    wanted = single.copy()
-    series = symbol_series(alpha[:, 0, 0], p)
-    for k in range(count):
-        for j in range(p, k + 1):
-            smooth = np.where(k - j >= alpha[:, 0, 0], series[:, j], 0.0)
-            wanted[:, k] += smooth[:, None] * single[:, k - j]
-    wanted *= factorial(q)
-    rest: Array = wanted - np.swapaxes(causal @ sequences.T, 1, 2)
+    q = np.arange(POWERS)[None, :, None]
+    rest: Array = factorial(q) * n ** (q - alpha) * rgamma(q + 1.0 - alpha)
+    for own, row in zip(rest, weights, strict=True):
+        for power, sequence in zip(own, sequences, strict=True):
+            power -= np.convolve(row, sequence)[:HEAD_SAMPLES]
     rest.setflags(write=False)
     return rest
-

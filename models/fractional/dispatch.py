@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from models.checks import InputError, one_of
 from models.fractional.band_limit import band_limited_derivative, low_pass, noise_cutoff
-from models.fractional.causal import causal_derivative
-from models.fractional.choice import (
-    Choice,
-    choose_causal,
-    choose_steady,
-    expected_noise,
-)
+from models.fractional.causal import causal_derivative, weighted_sum
+from models.fractional.choice import Choice, choose_causal, choose_clean, choose_steady
 from models.fractional.estimate import relative_rms, truncation_error
 from models.fractional.harmonics import fit_harmonics, harmonic_derivative
-from models.fractional.kinks import Kink, find_kinks, kinked_derivative
+from models.fractional.kinks import find_starts
 from models.fractional.l1 import l1_derivative
 from models.fractional.noise import roughness
 from models.fractional.orders import Array, checked_orders, checked_record
+from models.fractional.quadrature import noise_gains
 from models.fractional.result import KINDS, FractionalDerivative
 from models.fractional.spectral import spectral_derivative
 from models.fractional.weights import BDF_STEPS
@@ -34,8 +30,6 @@ SCHEMES = {
 }
 """Schemes that each operator can be computed with."""
 
-# A smoothed record is clean: the scheme after it need not fear noise.
-_AFTER_SMOOTHING = "bdf6"
 _WIDER = 1.4
 
 
@@ -59,9 +53,11 @@ def derivative(
         the Riemann-Liouville derivative as dt falls. Weyl acts from minus infinity: steady
         state.
     scheme : str, optional
-        How. "auto" chooses by noise and kind of record, and treats kinks apart.
-        Causal kinds: "bdf2" to "bdf6" (order of convergence by name, with starting
-        correction), "gl" (the same of order 1), "l1" (Caputo, orders in (0, 1)), "harmonics" or
+        How. "auto" chooses by noise and kind of record, takes differences over a stride where
+        samples lie so close that rounding or noise would spoil them, and treats kinks apart.
+        Causal kinds: "bdf2" to "bdf6" (whole derivatives by backward differences of that order
+        of convergence, then a fractional integral of order 6, with starting correction), "gl"
+        (the same with differences of order 1), "l1" (Caputo, orders in (0, 1)), "harmonics" or
         "band-limited" (the record replaced by its fit, or low-passed, first). Weyl: "spectral"
         (whole periods), "harmonics" (a sine test, cycles whole or not), "band-limited"
         (anything else).
@@ -149,22 +145,24 @@ def _compute(
     if kind == "weyl":
         out = _steady(task, choice)
         error = _steady_error(task, choice, out) if estimate else np.zeros(orders.size)
-        label = choice.scheme
+        label, stride = choice.scheme, 1
     else:
         clean = _smoothed(task, choice)
-        label = choice.scheme if clean is None else _AFTER_SMOOTHING
-        out = _causal(task, label, task.rows if clean is None else clean, step, choice.kinks)
+        rows = task.rows if clean is None else clean
+        last = choice if clean is None else choose_clean(clean, orders)
+        out = _causal(task, last, rows, step)
         error = np.zeros(orders.size)
         if estimate:
-            error = _causal_error(task, choice, label, clean, out)
-        if clean is not None:
-            label = f"{choice.scheme}+{label}"
+            error = _causal_error(task, choice, last, rows, out)
+        label = last.scheme if last is choice else f"{choice.scheme}+{last.scheme}"
+        stride = last.stride
     shaped = out.reshape(orders.size, *values.shape)
     return FractionalDerivative(
         values=shaped[0] if scalar else shaped,
         operator=kind,
         scheme=label,
         error=error[0] if scalar else error,
+        stride=stride,
         cutoff=choice.cutoff,
     )
 
@@ -184,7 +182,8 @@ def _choose(task: _Task, scheme: str) -> Choice:
             )
         return Choice(scheme, fits=tuple(fit for fit in fits if fit is not None))
     if scheme == "band-limited":
-        return Choice(scheme, noise_cutoff(task.rows, task.dt, float(task.orders.max())))
+        cutoff = noise_cutoff(task.rows, task.dt, float(task.orders.max()))
+        return Choice(scheme, cutoff=cutoff)
     return Choice(scheme)
 
 
@@ -213,7 +212,7 @@ def _steady_error(task: _Task, choice: Choice, out: Array) -> Array:
         size = np.sqrt(np.mean(out**2, axis=(1, 2)))
         return np.asarray(np.max(shares, axis=0) / np.maximum(size, 1e-300))
     if choice.cutoff is not None and _WIDER * choice.cutoff < 0.5 / dt:
-        other = _steady(task, Choice(choice.scheme, _WIDER * choice.cutoff))
+        other = _steady(task, Choice(choice.scheme, cutoff=_WIDER * choice.cutoff))
         return relative_rms(other - out, out)
     noise = max(roughness(row).noise for row in rows)
     factors = spectral_derivative(np.eye(1, rows.shape[1]), orders, dt)
@@ -232,43 +231,62 @@ def _smoothed(task: _Task, choice: Choice) -> Array | None:
     return None
 
 
-def _causal(
-    task: _Task, scheme: str, rows: Array, dt: float, kinks: tuple[tuple[Kink, ...], ...] = ()
-) -> Array:
+def _causal(task: _Task, choice: Choice, rows: Array, dt: float) -> Array:
     """Return derivatives from the first sample on, (K, R, N)."""
-    if scheme == "l1":
+    if choice.scheme == "l1":
         return l1_derivative(rows, task.orders, dt)
-    caputo = task.kind == "caputo"
-    if kinks:
-        return kinked_derivative(rows, task.orders, dt, kinks, scheme=scheme, caputo=caputo)
-    bare = task.kind == "grunwald-letnikov"
+    if task.kind == "grunwald-letnikov":
+        return weighted_sum(rows, task.orders, dt)
     return causal_derivative(
-        rows, task.orders, dt, scheme=scheme, caputo=caputo, corrected=not bare
+        rows,
+        task.orders,
+        dt,
+        steps=BDF_STEPS[choice.scheme],
+        stride=choice.stride,
+        caputo=task.kind == "caputo",
+        starts=choice.starts or None,
     )
 
 
 def _causal_error(
-    task: _Task, choice: Choice, scheme: str, clean: Array | None, out: Array
+    task: _Task, choice: Choice, last: Choice, rows: Array, out: Array
 ) -> Array:
     """Return the relative rms error, (K,), of a derivative from the first sample on."""
-    rows = task.rows if clean is None else clean
-    p = BDF_STEPS.get(scheme, 2)
-
-    def coarser(x: Array, dt: float) -> Array:
-        kinks = tuple(find_kinks(row) for row in x) if choice.kinks else ()
-        return _causal(task, scheme, x, dt, kinks)
-
-    error = truncation_error(coarser, rows, task.dt, out, p)
-    if clean is None:
-        noise = [expected_noise(roughness(row), task.orders, p) for row in rows]
-        return np.asarray(np.hypot(error, np.max(noise, axis=0)))
+    error = _truncation(task, last, rows, out)
+    if last is choice:
+        return np.asarray(np.hypot(error, _noise(task, last, out)))
     if choice.cutoff is not None and _WIDER * choice.cutoff < 0.5 / task.dt:
-        wider = _smoothed(task, Choice(choice.scheme, _WIDER * choice.cutoff))
+        wider = _smoothed(task, Choice(choice.scheme, cutoff=_WIDER * choice.cutoff))
         if wider is not None:
-            other = _causal(task, scheme, wider, task.dt)
+            other = _causal(task, replace(last, starts=()), wider, task.dt)
             error = np.hypot(error, relative_rms(other - out, out))
     for fit in choice.fits:
         harmonics = float(np.linalg.norm(fit.coefficients[1:])) / np.sqrt(2.0)
         spread = 2.0 * fit.residual / np.sqrt(rows.shape[1]) * fit.coefficients.size**2
         error = np.hypot(error, spread / harmonics)
     return np.asarray(error)
+
+
+def _truncation(task: _Task, choice: Choice, rows: Array, out: Array) -> Array:
+    """Relative rms error, (K,), as a finer stride shows it, or else a coarser sampling."""
+    if choice.stride > 1:
+        finer = replace(choice, stride=choice.stride // 2)
+        apart = relative_rms(_causal(task, finer, rows, task.dt) - out, out)
+        noise = _noise(task, finer, out)
+        return np.asarray(np.sqrt(np.clip(apart**2 - noise**2, 0.0, None)))
+
+    def coarser(x: Array, dt: float) -> Array:
+        starts = tuple(find_starts(row) for row in x) if choice.starts else ()
+        return _causal(task, replace(choice, starts=starts), x, dt)
+
+    return truncation_error(coarser, rows, task.dt, out, BDF_STEPS.get(choice.scheme, 2))
+
+
+def _noise(task: _Task, choice: Choice, out: Array) -> Array:
+    """Relative rms error, (K,), that the noise of the samples makes."""
+    level = max(roughness(row).noise for row in task.rows)
+    steps = BDF_STEPS.get(choice.scheme, 2)
+    gains = noise_gains(task.orders, choice.stride)[:, steps - 1]
+    noise = level * gains * task.dt**-task.orders
+    size = np.sqrt(np.mean(out**2, axis=(1, 2)))
+    return np.asarray(noise / np.maximum(size, 1e-300))

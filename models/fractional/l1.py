@@ -78,4 +78,4 @@ def l1_derivative(x: Array, orders: Array, dt: float) -> Array:
     spectra = weight_spectra("l1", orders, x.shape[1], l1_weights)
     steps = np.diff(x, axis=1, prepend=x[:, :1])
     choice = np.zeros(orders.size, dtype=np.intp)
-    return convolve(steps[None], choice, spectra, dt**-orders, x.shape[1])
+    return convolve(steps[None], choice, spectra, dt**-orders)

@@ -24,5 +24,7 @@ class FractionalDerivative:
     "band-limited+bdf..." where a causal scheme followed the low-pass."""
     error: Array
     """() or (K,): expected rms error over rms value, truncation and noise together."""
+    stride: int = 1
+    """Samples between the points of the backward differences, for "bdf2" to "bdf6"."""
     cutoff: float | None = None
     """Hz, of the low-pass, where one was used."""

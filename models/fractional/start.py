@@ -1,8 +1,10 @@
-"""Taylor coefficients at the start of a record, from a fit of fixed width in time."""
+"""Where a smooth motion starts, and its Taylor coefficients there, from a fit of fixed width."""
 
 from __future__ import annotations
 
 import functools
+import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -16,39 +18,64 @@ DEGREE = 8
 _NODES = 256
 _SHORTEST = 2 * (DEGREE + 1)
 LONGEST = 32768
+# Share of a residual in which neighbours may agree by rounding alone, that of time included.
+_ROUNDING_TOGETHER = 0.5
 
 
-def start_coefficients(x: Array, count: int) -> Array:
-    r"""Estimate :math:`C_k = x^{(k)}(0)\,\Delta t^k / k!` for k = 0 .. count - 1.
+@dataclass(frozen=True)
+class Start:
+    """Where a smooth motion starts: the first sample of a record, or a kink."""
 
-    A polynomial is fitted to windows from the first sample on whose widths double; the width
-    kept is the one that leaves the least error in the slope, judged by the residual: longer
-    windows leave truncation (its neighbours go together), shorter ones amplify rounding and
-    noise. So the width is a time
-    that the motion sets, and finer sampling does not shorten it.
+    position: float
+    """Samples from the record's first one; need not be whole."""
+    motion: Array
+    """(9,) Taylor coefficients at the position, of the motion behind it, per sample^k."""
+    jumps: Array
+    """(9,) the same of the motion behind less the motion before."""
+    width: int
+    """Samples from the position on over which `motion` holds."""
+
+    @property
+    def first(self) -> int:
+        """Index of the first sample that is not before the position."""
+        return math.ceil(self.position)
+
+    @property
+    def offset(self) -> float:
+        """How long before that sample the motion starts, in samples: 0 <= offset < 1."""
+        return self.first - self.position
+
+
+def fit_start(x: Array) -> Start:
+    r"""Estimate :math:`C_k = x^{(k)}(0)\,\Delta t^k / k!` for k = 0 .. 8.
+
+    A polynomial is fitted to windows from the first sample on whose widths grow by half; the
+    width kept is the one that leaves the least error in the slope, judged by the residual:
+    longer windows leave truncation (its neighbours go together), shorter ones amplify noise,
+    and rounding at the size of the whole. So the width is a time that the motion sets, and
+    finer sampling does not shorten it.
 
     Parameters
     ----------
     x : ndarray, shape (N,)
         Record. Only the first 32,768 samples matter.
-    count : int
-        Number of coefficients, at most 9.
 
     Returns
     -------
-    ndarray, shape (count,)
-        Zero beyond the degree that the record's length can carry.
+    Start
+        At the first sample, nothing before. Coefficients are zero beyond the degree that the
+        record's length can carry.
 
     Examples
     --------
     >>> t = 0.01 * np.arange(400)
-    >>> bool(np.allclose(start_coefficients(2.0 + 3.0 * t, 2), [2.0, 0.03], atol=1e-11))
+    >>> bool(np.allclose(fit_start(2.0 + 3.0 * t).motion[:2], [2.0, 0.03], atol=1e-11))
     True
     """
-    coefficients = np.zeros(count)
-    limit = min(x.size, LONGEST)
-    best = np.inf
-    for width in _widths(limit):
+    coefficients = np.zeros(DEGREE + 1)
+    best, kept = np.inf, x.size
+    floor = 1e-16 * float(np.max(np.abs(x[:LONGEST])))
+    for width in _widths(min(x.size, LONGEST)):
         nodes, projector, basis, monomials = _fit(width)
         window = x[nodes]
         modes = projector @ window
@@ -56,16 +83,17 @@ def start_coefficients(x: Array, count: int) -> Array:
         spare = max(nodes.size - modes.size, 1)
         variance = float(residual @ residual) / spare
         together = float(residual[1:] @ residual[:-1]) / spare
-        truncation = max(together - 2.0 * variance / np.sqrt(spare), 0.0)
-        floor = 1e-16 * float(np.max(np.abs(window)))
+        by_chance = max(_ROUNDING_TOGETHER, 2.0 / np.sqrt(spare)) * variance
+        truncation = max(together - by_chance, 0.0)
         judged = np.sqrt(truncation + max(variance, floor**2) / nodes.size) / width
-        if judged < best:
+        if judged <= best:
             best = judged
-            fitted = monomials @ modes
-            kept = min(count, fitted.size)
             coefficients[:] = 0.0
-            coefficients[:kept] = fitted[:kept]
-    return coefficients
+            coefficients[: modes.size] = monomials @ modes
+            kept = width
+    # Whatever the fit: what happens from the start on is measured from the first sample.
+    coefficients[0] = x[0]
+    return Start(0.0, coefficients, coefficients, kept)
 
 
 def _widths(limit: int) -> list[int]:

@@ -8,21 +8,22 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import rgamma
 
 from models.checks import finite_array, number, one_of
-from models.fractional.choice import best_steps
-from models.fractional.correction import (
-    HEAD_SAMPLES,
-    MOMENTS,
-    POWERS,
-    end_corrections,
-    head_corrections,
+from models.fractional.causal import add_steps, start_corrections, taylor
+from models.fractional.correction import HEAD_SAMPLES, MOMENTS, end_corrections
+from models.fractional.differences import (
+    Split,
+    backward_difference,
+    reach,
+    split_orders,
+    started_derivative,
 )
 from models.fractional.memory_modes import MemoryModes, memory_modes
 from models.fractional.orders import Array, checked_orders
-from models.fractional.start import LONGEST, start_coefficients
-from models.fractional.weights import BDF_STEPS, HEAD, convolution_weights
+from models.fractional.quadrature import best_quadrature
+from models.fractional.start import LONGEST, Start, fit_start
+from models.fractional.weights import BDF_STEPS, HEAD, INTEGRAL_STEPS, convolution_weights
 
 _KINDS = ("caputo", "riemann-liouville")
 _BLOCK = 4096
@@ -40,6 +41,10 @@ class StreamOperator:
     """Caputo, else Riemann-Liouville."""
     steps: int
     """Steps of the backward difference formula."""
+    stride: int
+    """Samples from one point of the backward differences to the next."""
+    split: Split
+    """Orders as whole derivatives and integrals of them."""
     spectra: NDArray[np.complex128]
     """(K, L // 2 + 1) of the weights that act within buffer and block."""
     modes: MemoryModes
@@ -54,16 +59,18 @@ class StreamState:
 
     seen: int
     """Samples taken in."""
-    start: Array
-    """(6,) Taylor coefficients at the first sample, per sample^k."""
+    start: Start
+    """The motion at the first sample."""
+    samples: Array
+    """The latest samples, as many as the backward differences look back."""
     recent: Array
-    """(2, 512) the latest samples, as they are and less the initial value."""
+    """(V, 512) the latest whole derivatives."""
     memory: Array
-    """(2, M) modes of all samples before those."""
+    """(V, M) modes of all whole derivatives before those."""
 
 
 def stream_operator(
-    orders: ArrayLike, dt: float, *, kind: str = "caputo", scheme: str = "bdf4"
+    orders: ArrayLike, dt: float, *, kind: str = "caputo", scheme: str = "bdf4", stride: int = 1
 ) -> StreamOperator:
     """Prepare derivatives in one pass.
 
@@ -75,6 +82,8 @@ def stream_operator(
         Sampling interval, s.
     kind : {"caputo", "riemann-liouville"}, optional
     scheme : {"gl", "bdf2", ..., "bdf6"}, optional
+    stride : int, optional
+        Samples from one point of the backward differences to the next.
 
     Returns
     -------
@@ -83,7 +92,7 @@ def stream_operator(
     Raises
     ------
     InputError
-        For unknown kinds or schemes, orders outside [-1, 2] or dt <= 0.
+        For unknown kinds or schemes, orders outside [-1, 2], dt <= 0 or a stride below 1.
 
     Examples
     --------
@@ -94,13 +103,16 @@ def stream_operator(
     step = number("dt", dt, above=0.0)
     one_of("kind", kind, _KINDS)
     steps = BDF_STEPS[one_of("scheme", scheme, BDF_STEPS)]
-    modes = memory_modes(alpha, steps)
-    weights = convolution_weights(alpha, HEAD + _BLOCK, steps)
+    split = split_orders(alpha)
+    modes = memory_modes(split.rest, INTEGRAL_STEPS)
+    weights = convolution_weights(split.rest, HEAD + _BLOCK, INTEGRAL_STEPS)
     return StreamOperator(
         orders=alpha,
         dt=step,
         caputo=kind == "caputo",
         steps=steps,
+        stride=int(number("stride", stride, at_least=1.0)),
+        split=split,
         spectra=np.asarray(scipy.fft.rfft(weights, n=_transform_length(), axis=-1)),
         modes=modes,
         powers=np.exp(-np.outer(modes.rates, np.arange(_BLOCK + 1))),
@@ -123,15 +135,16 @@ def begin(operator: StreamOperator, first: ArrayLike) -> StreamState:
     Examples
     --------
     >>> state = begin(stream_operator([0.5], 0.01), np.arange(30.0))
-    >>> bool(np.allclose(state.start, [0, 1, 0, 0, 0, 0]))
+    >>> bool(np.allclose(state.start.motion[:3], [0, 1, 0]))
     True
     """
-    values = finite_array("first", first, ndim=1)
+    variants = len(operator.split.wholes)
     return StreamState(
         seen=0,
-        start=start_coefficients(values, POWERS),
-        recent=np.zeros((2, HEAD)),
-        memory=np.zeros((2, operator.modes.rates.size)),
+        start=fit_start(finite_array("first", first, ndim=1)),
+        samples=np.zeros(reach(operator.split.wholes[-1], operator.steps, operator.stride)),
+        recent=np.zeros((variants, HEAD)),
+        memory=np.zeros((variants, operator.modes.rates.size)),
     )
 
 
@@ -232,8 +245,11 @@ def stream_derivative(
         yield from (np.empty((alpha.size, 0)) for _ in held)
         return
     first = np.concatenate(held)
-    name = best_steps(first[None], alpha)[0] if scheme == "auto" else scheme
-    operator = stream_operator(alpha, dt, kind=kind, scheme=name)
+    stride = 1
+    if scheme == "auto":
+        best = best_quadrature(first[None], alpha, [[fit_start(first)]])
+        scheme, stride = best.scheme, best.stride
+    operator = stream_operator(alpha, dt, kind=kind, scheme=scheme, stride=stride)
     state = begin(operator, first)
     for part in held:
         state, values = advance(operator, state, part)
@@ -252,33 +268,44 @@ def _advance_block(
     operator: StreamOperator, state: StreamState, block: Array, out: Array
 ) -> StreamState:
     """Write the derivatives at up to one block of samples into `out`; return the next state."""
-    size = block.size
-    n = np.arange(state.seen, state.seen + size, dtype=np.float64)
-    sources = np.stack([block, block - state.start[0]])
-    known = np.stack([state.start, state.start])
-    known[1, 0] = 0.0
-    if state.seen < MOMENTS:
-        ends = (known @ end_corrections(POWERS))[:, state.seen : state.seen + size]
-        sources[:, : ends.shape[1]] += ends
-    choice = ((operator.orders > 0.0) & operator.caputo).astype(np.intp)
+    size, seen, split = block.size, state.seen, operator.split
+    samples = np.concatenate([state.samples, block])
+    sources = np.stack([_source(operator, state, samples, whole) for whole in split.wholes])
     joined = np.concatenate([state.recent, sources], axis=1)
     transformed = scipy.fft.rfft(joined, n=_transform_length(), axis=-1)
-    for j, variant in enumerate(choice):
+    for j, variant in enumerate(split.choice):
         row = scipy.fft.irfft(operator.spectra[j] * transformed[variant], n=_transform_length())
         out[j] = row[HEAD : HEAD + size]
-    out += (operator.modes.weights * state.memory[choice]) @ operator.powers[:, 1 : size + 1]
-    if state.seen < HEAD_SAMPLES:
-        rest = head_corrections(tuple(operator.orders.tolist()), operator.steps, POWERS)
-        part = rest[:, :, state.seen : state.seen + size]
-        out[:, : part.shape[2]] += np.einsum("kj,kjn->kn", known[choice], part)
-    if operator.caputo:
-        for index in np.flatnonzero((operator.orders > 1.0) & (operator.orders < 2.0)):
-            k = int(index)
-            later = n > 0.0
-            decay = np.where(later, n, 1.0) ** (1.0 - operator.orders[k]) * later
-            out[k] -= state.start[1] * float(rgamma(2.0 - operator.orders[k])) * decay
-    out *= operator.dt ** -operator.orders[:, None]
+    out += (operator.modes.weights * state.memory[split.choice]) @ operator.powers[:, 1 : size + 1]
+    if seen < HEAD_SAMPLES:
+        heads = start_corrections(state.start, split)[:, seen : seen + size]
+        out[:, : heads.shape[1]] += heads
+    scales = operator.dt**-operator.orders
+    out *= scales[:, None]
+    if not operator.caputo:
+        add_steps(out, state.start, operator.orders, scales, seen)
     # What leaves the buffer enters the modes, the latest with weight one.
     leaving = joined[:, :size][:, ::-1]
-    memory = state.memory * operator.powers[:, size] + leaving @ operator.powers[:, :size].T
-    return StreamState(state.seen + size, state.start, joined[:, size:].copy(), memory)
+    return StreamState(
+        seen=seen + size,
+        start=state.start,
+        samples=samples[size:].copy(),
+        recent=joined[:, size:].copy(),
+        memory=state.memory * operator.powers[:, size] + leaving @ operator.powers[:, :size].T,
+    )
+
+
+def _source(operator: StreamOperator, state: StreamState, samples: Array, whole: int) -> Array:
+    """Whole derivative of a block behind the samples before it, with the start's correction."""
+    seen, past = state.seen, state.samples.size
+    how = whole, operator.steps, operator.stride
+    source = backward_difference(samples, *how, past=past)
+    behind = reach(*how)
+    if seen < behind:
+        from_start = samples[past - seen : past - seen + behind]
+        started = started_derivative(from_start, state.start, *how)[seen:]
+        source[: started.size] = started
+    if seen < MOMENTS:
+        ends = (taylor(state.start, whole) @ end_corrections())[seen : seen + source.size]
+        source[: ends.size] += ends
+    return source

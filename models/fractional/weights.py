@@ -7,10 +7,15 @@ import math
 from fractions import Fraction
 
 import numpy as np
+import scipy.fft
 from scipy.special import rgamma
 
+from models.fractional.blocks import blocks
 from models.fractional.orders import Array
 
+INTEGRAL_STEPS = 6
+"""Steps of the formula that integrates: integrals do not amplify noise, so there is no reason to
+take fewer."""
 BDF_STEPS = {"gl": 1, "bdf2": 2, "bdf3": 3, "bdf4": 4, "bdf5": 5, "bdf6": 6}
 """Schemes by name and the number p of steps of their backward difference formula."""
 
@@ -18,6 +23,9 @@ BDF_STEPS = {"gl": 1, "bdf2": 2, "bdf3": 3, "bdf4": 4, "bdf5": 5, "bdf6": 6}
 # decayed below 1e-30 by then.
 HEAD = 512
 _TERMS = 11
+# The coefficients of the factor without the root at 1 fall at least like 0.8634^n.
+_DECAYED = 256
+_CIRCLE = 512
 
 
 @functools.cache
@@ -99,8 +107,9 @@ def convolution_weights(orders: Array, count: int, p: int) -> Array:
     Returns
     -------
     ndarray, shape (K, N)
-        Correct to a few units of rounding each. The first 512 come from the recurrence of a
-        power of a polynomial, the rest from the expansion at zeta = 1.
+        Correct to a few units of rounding of the largest. The first 512 are products of two
+        series, that of (1 - zeta)^alpha and that of the other factor, the rest come from the
+        expansion at zeta = 1.
 
     References
     ----------
@@ -112,31 +121,36 @@ def convolution_weights(orders: Array, count: int, p: int) -> Array:
     array([[ 1.    , -0.5   , -0.125 , -0.0625]])
     """
     weights = np.empty((orders.size, count))
-    polynomial = [float(c) for c in difference_polynomial(p)]
     head = min(count, HEAD)
-    weights[:, 0] = polynomial[0] ** orders
-    steps = np.arange(p, 0, -1)
-    scaled = np.array(polynomial)[steps] / polynomial[0]
-    slopes = (orders[:, None] + 1.0) * steps * scaled
-    for n in range(1, head):
-        first = max(p - n, 0)
-        factors = slopes[:, first:] / n - scaled[first:]
-        weights[:, n] = np.einsum("kj,kj->k", factors, weights[:, max(n - p, 0) : n])
+    n = np.arange(1, head)
+    binomial = np.ones((orders.size, head))
+    np.cumprod((n - 1.0 - orders[:, None]) / n, axis=1, out=binomial[:, 1:])
+    factors = _smooth_factor(orders, p)
+    for row, one, factor in zip(weights, binomial, factors, strict=True):
+        row[:head] = np.convolve(one, factor)[:head]
     whole = (orders >= 0.0) & (orders == np.floor(orders))
     for k in np.flatnonzero(whole):
         weights[k, p * int(orders[k]) + 1 : head] = 0.0
     if count > head:
         terms = symbol_series(orders, p) * rgamma(-orders[:, None] - np.arange(_TERMS))
-        edges = [head, min(count, 16 * head), count]
-        for start, stop in zip(edges[:-1], edges[1:], strict=True):
-            _fill_tail(weights[:, start:stop], orders, terms, start)
+        for part in blocks(head, count):
+            _fill_tail(weights[:, part], orders, terms, part.start)
     return weights
+
+
+def _smooth_factor(orders: Array, p: int) -> Array:
+    """First coefficients of (delta(zeta) / (1 - zeta))^alpha; those left out are below rounding."""
+    if p == 1:
+        return np.ones((orders.size, 1))
+    circle = np.exp(-2j * np.pi / _CIRCLE * np.arange(_CIRCLE // 2 + 1))
+    factor = sum((1.0 - circle) ** (k - 1) / k for k in range(1, p + 1))
+    # No roots within the unit circle, and never a negative real number on it.
+    series = scipy.fft.irfft(np.power(factor, orders[:, None]), n=_CIRCLE, axis=-1)
+    return np.asarray(series[:, :_DECAYED])
 
 
 def _fill_tail(out: Array, orders: Array, series: Array, start: int) -> None:
     """Write sum_j series_j n^(-order-1-j) for n = start, start + 1, ... into `out`."""
-    if out.shape[1] == 0:
-        return
     n = np.arange(start, start + out.shape[1], dtype=np.float64)
     logarithm = np.log(n)
     inverse = 1.0 / n

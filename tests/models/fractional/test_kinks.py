@@ -41,6 +41,28 @@ def test_none_in_noise_or_smooth_records(seed):
     assert find_kinks(t[:20]) == ()
 
 
+def test_kink_that_noise_hides_from_neighbouring_samples():
+    t = 1e-4 * np.arange(100_000)
+    noise = 1e-10 * np.random.default_rng(3).standard_normal(t.size)
+    x = np.sin(t) + 0.3 * np.clip(t - 3.00037, 0.0, None) ** 2 + noise
+    assert find_kinks(x) == ()
+    (kink,) = find_kinks(x, 64)
+    assert kink.position == pytest.approx(30_003.7, abs=1.0)
+    assert kink.jumps[2] * 1e8 == pytest.approx(0.3, rel=1e-2)
+
+
+@pytest.mark.parametrize("count", [100_000, 400_000])
+@pytest.mark.parametrize("order", [0.5, 1.2, 1.5])
+def test_kinks_of_fine_sampling(order, count):
+    dt = 10.0 / count
+    t = dt * np.arange(count)
+    near = int(2.3 / dt) + np.geomspace(2, count // 20, 40).astype(int)
+    chosen = np.unique(np.concatenate([near, np.linspace(1, count - 1, 40).astype(int)]))
+    exact = oracles.tapered_derivative("cubic", 2.3, order, OMEGA, t[chosen])
+    found = derivative(oracles.tapered("cubic", 2.3, OMEGA, t), order, dt)[chosen]
+    assert oracles.relative_rms(found, exact) < 1e-8
+
+
 @pytest.mark.parametrize("order", [0.5, 1.5])
 @pytest.mark.parametrize("length", [1.0, 2.0, 2.3])
 def test_cubic_smoothstep(order, length):

@@ -3,11 +3,11 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from models.fractional import derivative, stream_derivative
+from models.fractional import derivative, fractional_derivative, stream_derivative
 from models.fractional.streaming import advance, begin, stream_operator
 from tests.models.fractional import oracles
 
-ORDERS = [-1.0, -0.4, 0.0, 0.5, 1.0, 1.5, 2.0]
+ORDERS = [-1.0, -0.4, 0.0, 0.05, 0.3, 0.5, 0.7, 0.95, 1.0, 1.05, 1.3, 1.5, 1.8, 1.95, 2.0]
 
 
 def signal(n, dt):
@@ -24,6 +24,32 @@ def test_chunks_equal_the_whole(kind, scheme):
     found = np.concatenate(list(parts), axis=1)
     for k in range(len(ORDERS)):
         assert oracles.relative_rms(found[k, 1:], whole[k, 1:]) < 1e-9
+        assert np.max(np.abs(found[k] - whole[k])) < 1e-8 * np.max(np.abs(whole[k, 1:]))
+
+
+@pytest.mark.parametrize("kind", ["caputo", "riemann-liouville"])
+@pytest.mark.parametrize("size", [377, 5000])
+@pytest.mark.parametrize("top", [0.95, 1.95])
+def test_auto_in_pieces_equals_the_whole(kind, size, top):
+    # Fine sampling: the stride is longer than a chunk of 377 samples can hold.
+    orders = [order for order in ORDERS if order <= top]
+    x = signal(np.arange(30_000), 2e-5)
+    whole = fractional_derivative(x, orders, 2e-5, kind=kind)
+    assert whole.stride > 1
+    chunks = np.split(x, np.arange(size, x.size, size))
+    found = np.concatenate(list(stream_derivative(chunks, orders, 2e-5, kind=kind)), axis=1)
+    for k in range(len(orders)):
+        assert oracles.relative_rms(found[k, 1:], whole.values[k, 1:]) < 1e-9
+
+
+@pytest.mark.parametrize("order", [0.05, 0.7, 1.3, 1.95])
+def test_pieces_against_the_exact_derivative(order):
+    t = 4e-5 * np.arange(100_000)
+    chosen = np.linspace(1, t.size - 1, 60).astype(int)
+    exact = oracles.sine(order, 2.0 * np.pi, 0.7, t[chosen], caputo=True)
+    parts = stream_derivative(np.split(np.sin(2.0 * np.pi * t + 0.7), 40), [order], 4e-5)
+    found = np.concatenate(list(parts), axis=1)[0]
+    assert oracles.relative_rms(found[chosen], exact) < 1e-8
 
 
 def test_any_split_gives_the_same():

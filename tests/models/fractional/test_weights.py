@@ -2,6 +2,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from models.fractional import derivative
 from models.fractional.memory_modes import memory_modes
 from models.fractional.weights import convolution_weights, difference_polynomial
 
@@ -40,6 +41,17 @@ def test_head_and_tail_join(p):
     for row in weights:
         slopes = np.diff(np.log(np.abs(row[480:560]))) * np.arange(480.5, 559.5)
         assert np.max(np.abs(np.diff(slopes))) < 1e-4
+
+
+@pytest.mark.parametrize("count", [2, 3, 5, 8, 101, 1000])
+def test_bare_sum_is_the_sum(count):
+    x = np.random.default_rng(count).standard_normal(count)
+    found = derivative(x, ORDERS, 0.5, kind="grunwald-letnikov")
+    for order, values in zip(ORDERS, found, strict=True):
+        weights = convolution_weights(np.array([order]), count, 1)[0]
+        np.testing.assert_allclose(
+            values, 0.5**-order * np.convolve(weights, x)[:count], rtol=1e-11, atol=1e-12
+        )
 
 
 def test_gruenwald_letnikov_weights_are_binomial():
