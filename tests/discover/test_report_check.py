@@ -1,19 +1,18 @@
 import pytest
 
-from discover.data_check import check_campaign
 from discover.records import RigLimits
 from discover.report.check import check_figures, check_lines, check_report, next_step
-from tests.discover.data_check.plan import SINGLE, WIDE, campaign
+from tests.discover.data_check.plan import SINGLE, WIDE, checked
 from tests.discover.test_report_study import Page
 
 
-def page_of(checked):
-    document = checked.to_dict()
-    figures = check_figures(document, checked.figure_data)
+def page_of(found):
+    document = found.to_dict()
+    figures = check_figures(document, found.figure_data)
     return Page(
         check_report(
             document,
-            checked.figure_data,
+            found.figure_data,
             figures,
             campaign="plan",
             command="inerter check plan --seed 0",
@@ -23,12 +22,12 @@ def page_of(checked):
 
 @pytest.fixture(scope="module")
 def single():
-    return check_campaign(campaign(SINGLE))
+    return checked(SINGLE)
 
 
 @pytest.fixture(scope="module")
 def wide():
-    return check_campaign(campaign(WIDE))
+    return checked(WIDE)
 
 
 def test_page_is_well_formed_self_contained_and_its_ids_are_unique(single):
@@ -71,13 +70,13 @@ def test_next_comes_the_added_test_or_the_study(single, wide):
 
 
 def test_without_a_test_to_add_the_limits_are_named():
-    checked = check_campaign(campaign(SINGLE, rig=RigLimits(max_force=1e-6)))
-    assert "[rig]" in next_step(checked.to_dict(), campaign="plan")
+    found = checked(SINGLE, rig=RigLimits(max_force=1e-6))
+    assert "[rig]" in next_step(found.to_dict(), campaign="plan")
 
 
 def test_much_noise_asks_for_less_of_it():
     """A gap goes with the inverse square of the noise."""
-    document = check_campaign(campaign(WIDE[1:3], noise=0.3)).to_dict()
+    document = checked(WIDE[1:3], noise=0.3).to_dict()
     document["added_test"] |= {"gap_nats": 0.75}
     assert "noise 2 times lower would do" in next_step(document, campaign="plan")
 
@@ -89,9 +88,9 @@ def test_errors_come_before_a_study(wide):
 
 
 def test_a_campaign_that_is_all_held_out_still_reports():
-    checked = check_campaign(campaign(((2.0, 0.01), (1.0, 0.01)), held_out=True))
-    page = page_of(checked)
-    assert "no record may be fitted" in " ".join(check_lines(checked.to_dict(), campaign="p"))
+    found = checked(((2.0, 0.01), (1.0, 0.01)), held_out=True)
+    page = page_of(found)
+    assert "no record may be fitted" in " ".join(check_lines(found.to_dict(), campaign="p"))
     assert "Rank and conditioning" not in page.text
     assert "Where the tests stand" in page.text
 

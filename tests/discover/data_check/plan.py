@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
+from discover.data_check import check_campaign
 from discover.data_check.plan import Plan, SineTest, plan_of
 from discover.motion_fit import observe
 from discover.records import Campaign, Record
@@ -36,6 +38,12 @@ def campaign(plan, *, rig=None, device=None, **options):
     """Return the campaign of a plan of (frequency, amplitude), Hz and m."""
     records = tuple(record(f, a, **options) for f, a in plan)
     return Campaign("plan", records, rig=rig, device=device)
+
+
+@cache
+def checked(plan, **options):
+    """Return the check of these tests; the same is made once."""
+    return check_campaign(campaign(plan, **options))
 
 
 def planned(plan, **options):

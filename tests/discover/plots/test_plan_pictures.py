@@ -5,13 +5,12 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 
-from discover.data_check import check_campaign
 from discover.figure_data import PlanFigureData, PlannedTest
 from discover.plots.plan_map import plan_map
 from discover.plots.separation_matrix import separation_matrix
 from models.device import Device
 from models.flow import dean_per_speed
-from tests.discover.data_check.plan import SINGLE, WIDE, campaign
+from tests.discover.data_check.plan import SINGLE, WIDE, checked
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -30,7 +29,7 @@ GRID = tuple(planned(f, a) for f in (0.1, 0.5, 2.0, 10.0) for a in (0.002, 0.01)
 
 @pytest.fixture(scope="module")
 def single():
-    return check_campaign(campaign(SINGLE, device=Device.preset("device-12")))
+    return checked(SINGLE)
 
 
 def test_map_has_both_axes_in_units_and_each_tests_noise():
@@ -116,7 +115,7 @@ def test_matrix_shows_every_gap_and_what_is_open(single):
 
 
 def test_matrix_of_a_wide_plan_leaves_nothing_open():
-    wide = check_campaign(campaign(WIDE)).to_dict()
+    wide = checked(WIDE).to_dict()
     labels = words(separation_matrix(wide))
     assert "below 3 nats: can't be told apart" not in labels
     assert "above 100 nats: told apart" in labels
