@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -97,6 +98,12 @@ class Device:
     bands: int | None
     """Number that is asked for; None lets the evidence choose."""
 
+    @cached_property
+    def assessor(self) -> Assessor:
+        """What assesses models of its records."""
+        space, curve = space_of(self.rows, self.friction)
+        return Assessor(space, Evaluator(space.sheet, space.scales), curve)
+
 
 def found(device: Device) -> Found:
     """Return the most probable bands, with what the device has besides."""
@@ -176,24 +183,18 @@ def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
     return result
 
 
-def assessor_of(device: Device) -> Assessor:
-    """Return what assesses models of a device's records."""
-    space, curve = space_of(device.rows, device.friction)
-    return Assessor(space, Evaluator(space.sheet, space.scales), curve)
-
-
 def composite(device: Device, way: Found) -> Assessed:
     """Return the bands' model with what has joined, fitted."""
     shared = [t for j in way.joined for t in j.terms]
     if device.with_friction:
         shared.append(FittedTerm(device.friction.id, 1.0, {}))
     model = composite_of(way.banded, way.variants, shared)
-    return assessor_of(device).assess(model, way.banded.place)
+    return device.assessor.assess(model, way.banded.place)
 
 
 def _with_one_more(device: Device, way: Found) -> Found | Step:
     """Return the bands with the term that makes the records most probable, or why there is none."""
-    assessor = assessor_of(device)
+    assessor = device.assessor
     now = composite(device, way)
     there = {j.id for j in way.joined}
     open_ids: Collection[str] = [i for i in device.extras if i not in there]

@@ -52,6 +52,8 @@ class Banded:
     """Place of the scale of friction's curve."""
     quiet: bool
     """True where all but noise may be explained."""
+    at_place: float
+    """Log evidence at these sizes and this scale, nats."""
 
     @property
     def bands(self) -> int:
@@ -148,6 +150,11 @@ class BandSearch:
         if not len(whole):
             return None
         prior = now.bands * -_LOG_2 - float(np.log(len(whole)))
+        if now.quiet:
+            answer = self.many(now.place, now.scale, whole, np.concatenate(starts))
+            most = now.value + float(logsumexp(answer.value)) - now.at_place
+            if most + prior < now.value:  # nothing is left that one more band could explain
+                return None
         return self._banded(
             names, whole, brackets, np.concatenate(starts), now.place, prior, brackets
         )
@@ -196,6 +203,7 @@ class BandSearch:
             place=place,
             scale=scale,
             quiet=is_quiet({p: v for p, (v, _, _) in alone.items()}),
+            at_place=float(last.value[0]),
         )
 
     def _seen(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.bands.extras import Found, assessor_of, composite
+from discover.bands.extras import Found, composite
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.model import Composite, Number
 from discover.posterior.reversal import Reversal, reversal_of
@@ -40,7 +40,7 @@ class Estimates:
 
 def estimated(prepared: Prepared, found: Found) -> Estimates:
     """Return what holds in each band, in numbers."""
-    assessor = assessor_of(prepared.device)
+    assessor = prepared.device.assessor
     assessed = composite(prepared.device, found)
     spread = spread_of(assessor, assessed)
     reversal = reversal_of(assessor, assessed) if prepared.device.with_friction else None

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from discover.dean import DeanCheck
@@ -241,8 +243,13 @@ class Study:
     """None where nothing is left to tell."""
     model: SegmentedModel
     """Enough to simulate from."""
-    figure_data: StudyFigureData
-    """For pictures."""
+    draw: Callable[[], StudyFigureData] = field(repr=False, compare=False)
+    """Makes what pictures need; other methods' answers take a second."""
+
+    @cached_property
+    def figure_data(self) -> StudyFigureData:
+        """For pictures."""
+        return self.draw()
 
     def _header(self, name: str) -> dict[str, Any]:
         return document_header(

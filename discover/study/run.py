@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,7 +107,7 @@ def _study(
             prepared, answer, estimates, bands, boundaries, check, campaign.rig
         ),
         model=model,
-        figure_data=_figures(prepared, answer, bands, accuracies, place, device),
+        draw=partial(_figures, prepared, answer, bands, accuracies, place, device),
     )
 
 

@@ -40,8 +40,9 @@ from tests.calibration.gap.third_set import (
 )
 
 RECORDS = 12
-SETS = ("first", "second")
-"""Sets of the kept table. "third" is run apart: ``python -m tests.calibration.gap.third_set``."""
+SETS = ("first", "second", "third")
+KEPT = SETS[:2]
+"""Sets of the kept table; the third is run once, at the end."""
 _FREQUENCIES = (0.3, 0.7, 1.5, 3.0, 6.0, 10.0)
 _AMPLITUDES = (0.003, 0.008, 0.02)
 _PAIR_SIZE = 0.1

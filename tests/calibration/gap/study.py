@@ -13,15 +13,14 @@ from joblib import Parallel, delayed
 
 from discover.gap import close_gap, prepare_baseline
 from discover.gap.result import Gap
-from discover.motion_fit import observe
-from discover.naming.evidence import UNKNOWN
+from discover.motion_fit import observe_all
 from models.checks import InputError
 from models.constitutive import ForceModel
 from tests.calibration.gap.case import Case, campaign
 from tests.calibration.gap.truth import nats_left
 
 BASELINE = ("inertia", "viscous-damping", "quadratic-damping", "coulomb-friction")
-AGREES = "agrees"
+AGREES, UNKNOWN = "agrees", "unknown"
 ABSORBED = 10.0  # nats that a noise-free refit leaves, below which nothing can be found
 IMPOSSIBLE = "impossible"  # no amount gives the size on this device
 FAILED = "failed"  # the search itself ended in an error
@@ -49,10 +48,17 @@ class Outcome:
     """Of the search."""
     commit: str
     """Of the code that answered; "+" where it had uncommitted changes."""
+    shape_adequate: bool | None = None
+    """Whether the first effect's formula holds; None where none is added."""
 
     @property
     def right(self) -> bool:
-        """True where the first answer is the expected one."""
+        """True where the first answer is the expected one.
+
+        Of what no entry explains, too, where the first effect is said to be only like it.
+        """
+        if UNKNOWN in self.expected and self.shape_adequate is False:
+            return True
         return self.named[0] in self.expected
 
     @property
@@ -68,8 +74,8 @@ class Outcome:
 
 def known_baseline(case: Case) -> ForceModel:
     """Return the whole baseline as fitted to the same device's clean campaign."""
-    observed = [observe(r) for r in campaign(case, clean=True).records]
-    return prepare_baseline(observed, "fit:" + ",".join(BASELINE), fixed=False).model
+    observed = observe_all(campaign(case, clean=True).records, 1)
+    return prepare_baseline(observed, "fit:" + ",".join(BASELINE), fixed=False).whole
 
 
 def baseline(case: Case) -> tuple[str | ForceModel, bool]:
@@ -122,6 +128,7 @@ def _outcome(
         case, fixed, expected, named,
         float(found.last[0][1] if first is None else first.probability),
         tuple(e for e, _ in stated), float(held / found.noise_percent), seconds, commit,
+        None if first is None else first.shape_adequate,
     )
 
 

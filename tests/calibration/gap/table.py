@@ -49,7 +49,8 @@ def table(found: Sequence[Outcome], *, list_wrong: bool) -> str:
     lines += [
         _row("among the stated, all sizes", single, lambda o: o.stated, STATED),
         _row("nothing hidden: agrees", clean, _right, AGREES),
-        _row("outside the catalogue: unknown", outside, _right, UNKNOWN),
+        _row("outside: unknown, or only like what is named", outside, _right, UNKNOWN),
+        _row("outside: unknown first", outside, _unknown, None),
         _row("outside: a name above 0.9", outside, _sure, SURE, most=True),
         _row("pairs: both within three rounds", pairs, lambda o: o.both, BOTH),
         _row(
@@ -122,6 +123,10 @@ def notes(found: Sequence[Outcome], done: Sequence[Outcome]) -> list[str]:
 
 def _right(outcome: Outcome) -> bool:
     return outcome.right
+
+
+def _unknown(outcome: Outcome) -> bool:
+    return outcome.named[0] == "unknown"
 
 
 def _sure(outcome: Outcome) -> bool:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.calibration.gap.case import SETS, clean_cases, pair_cases, single_cases
+from tests.calibration.gap.case import KEPT, clean_cases, pair_cases, single_cases
 from tests.calibration.gap.study import IMPOSSIBLE, outcomes
 from tests.calibration.gap.table import (
     AGREES,
@@ -16,7 +16,7 @@ from tests.calibration.gap.table import (
     UNKNOWN,
 )
 
-pytestmark = [pytest.mark.sweep, pytest.mark.parametrize("kind", SETS)]
+pytestmark = [pytest.mark.sweep, pytest.mark.parametrize("kind", KEPT)]
 DEVICE = 10_000  # of the run before the kept one; clean campaigns and pairs follow it
 CLEAN, PAIRS = range(DEVICE + 1000, DEVICE + 1020), range(DEVICE + 3000, DEVICE + 3010)
 

@@ -1,4 +1,6 @@
-"""Seals of both sets reverse along curves of their own, apart from those that discovery fits."""
+"""Seals of every set reverse along curves of their own, apart from those that discovery fits."""
+
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -10,8 +12,10 @@ from models.rig.reversal_laws import LAWS
 from models.terms.coulomb_friction import TERM, column
 from tests.calibration.gap.case import Case, campaign, measure, seal_of
 from tests.calibration.gap.second_set import SECOND_LAWS
+from tests.calibration.gap.third_set import THIRD_LAWS
 
-ALL = (*LAWS, *SECOND_LAWS)
+SETS = {"first": LAWS, "second": SECOND_LAWS, "third": THIRD_LAWS}
+ALL = tuple(law for laws in SETS.values() for law in laws)
 RATIO = np.geomspace(1e-3, 1e4, 500)
 APART = 0.01
 NO_MEMBER = 1e-3
@@ -68,9 +72,11 @@ def distance(wanted, form, count):
 
 
 def test_the_family_is_the_catalogues():
-    # Whatever else changes its curve has to be tried here too; presliding has none over speed.
+    # Whatever else changes its curve has to be tried here too; presliding has none over speed, and
+    # a speed relative to a record's own is a speed in that record.
     assert {p.name for p in TERM.parameters} == {
-        "transition_speed", "presliding", "form", "sharpness", "other_speed", "other_share",
+        "transition_speed", "relative_speed", "presliding", "form", "sharpness", "other_speed",
+        "other_share",
     }
     sharpness = next(p for p in TERM.parameters if p.name == "sharpness")
     assert SHARPNESS[0] <= sharpness.lower < sharpness.upper <= SHARPNESS[1]
@@ -125,15 +131,16 @@ def test_table_follows_its_law(law):
     np.testing.assert_allclose(found, law.share(RATIO), atol=2e-4)
 
 
-def test_the_sets_share_no_law():
+@pytest.mark.parametrize(("first", "second"), list(combinations(SETS, 2)))
+def test_the_sets_share_no_law(first, second):
     scales = np.geomspace(0.5, 2.0, 121)
-    for one in LAWS:
-        for other in SECOND_LAWS:
+    for one in SETS[first]:
+        for other in SETS[second]:
             least = min(np.max(np.abs(one.share(RATIO * s) - other.share(RATIO))) for s in scales)
             assert least > APART, (one.name, other.name)
 
 
-@pytest.mark.parametrize(("kind", "laws"), [("first", LAWS), ("second", SECOND_LAWS)])
+@pytest.mark.parametrize(("kind", "laws"), SETS.items())
 def test_seeds_draw_every_law_of_their_set_and_no_other(kind, laws):
     seals = [seal_of(Case(kind, (), 0.0, seed)) for seed in range(60)]
     assert {seal.reversal for seal in seals} == set(laws)
@@ -142,7 +149,7 @@ def test_seeds_draw_every_law_of_their_set_and_no_other(kind, laws):
     assert 1.4e-4 < max(speeds) <= 1.6e-4
 
 
-@pytest.mark.parametrize("kind", ["first", "second"])
+@pytest.mark.parametrize("kind", SETS)
 def test_plain_friction_follows_the_seal_of_the_case(kind):
     # Any other law of either set leaves 0.3 % or more.
     case = Case(kind, (), 0.0, 61)

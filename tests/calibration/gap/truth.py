@@ -15,8 +15,7 @@ from models.checks import Array
 from models.rig import Chain, RigRecord
 from models.rig import measure as measuring_chain
 from models.rig.seal import Seal
-from tests.calibration.gap.case import Case, measure, seal_of
-from tests.calibration.gap.second_set import second_noise
+from tests.calibration.gap.case import NOISE, Case, measure, seal_of
 
 _HARMONICS = 6
 _DRAWS = 100
@@ -99,8 +98,8 @@ def noise_power(case: Case, record: RigRecord) -> Array:
     rms = float(np.sqrt(np.mean(force**2)))
     sampling = round(1.0 / (record.time[1] - record.time[0]))
     for _ in range(_DRAWS):
-        if case.kind == "second":
-            noise = second_noise(force, sampling, case.seed, rng)
+        if case.kind in NOISE:
+            noise = NOISE[case.kind][1](force, sampling, case.seed, rng)
         else:
             _, noise = measuring_chain(
                 record.time, quiet, quiet, Chain(bits=0), rng, reference=rms, peak=1.0
