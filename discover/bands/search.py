@@ -58,7 +58,7 @@ class Banded:
     @property
     def bands(self) -> int:
         """Number of bands."""
-        return self.shares.shape[0]
+        return int(self.shares.shape[0])
 
 
 @dataclass

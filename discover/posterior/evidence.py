@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import log_ndtr
 
-from models.checks import Array
+from models.checks import Array, Indices
 
 _LOG_2 = float(np.log(2.0))
 
@@ -56,7 +56,7 @@ def solved(gram: Array, side: Array, spread: Array, sign: Array, log_normal: flo
     return Solved(value + np.sum(side_of_zero, axis=-1), mean, covariance)
 
 
-def without(gram: Array, taken: Array, spread: Array) -> tuple[Array, float]:
+def without(gram: Array, taken: Indices, spread: Array) -> tuple[Array, float]:
     """Return products with columns marginalised, and what that adds to the log density.
 
     Parameters

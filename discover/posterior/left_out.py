@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from discover.posterior.assess import Assessed, Assessor
-from models.checks import Array
+from models.checks import Array, Indices
 
 
 def left_out_growth(assessor: Assessor, assessed: Assessed) -> Array:
@@ -48,7 +48,7 @@ def left_out_growth(assessor: Assessor, assessed: Assessed) -> Array:
     return found
 
 
-def _relative(assessor: Assessor, units: Array, left: Array) -> float:
+def _relative(assessor: Assessor, units: Indices, left: Array) -> float:
     """Return the mean square of what is left in units, over that of their force."""
     sheet = assessor.space.sheet
     total = 0.0
