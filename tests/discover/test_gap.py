@@ -7,8 +7,8 @@ import pytest
 
 import discover
 from discover.gap import close_gap, term_ids
-from discover.gap.accuracy import misfit, pooled
 from discover.motion_fit import observe
+from discover.rows import compared_with, noise_percent, pooled_percent
 from models.checks import InputError
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 from tests.discover.gap_data import campaign, device
@@ -134,10 +134,10 @@ def test_leaving_out_a_record_predicts_worse_than_fitting_it():
 def test_the_misfit_of_the_exact_force_is_the_noise():
     data = campaign(device, noise=0.02)
     seen = [observe(r) for r in data.records]
-    exact = [misfit(o, device(0, *(getattr(o.motion, k) for k in (
+    exact = [compared_with(o, device(0, *(getattr(o.motion, k) for k in (
         "displacement", "velocity", "acceleration")))) for o in seen]
-    assert pooled(exact) == pytest.approx(2.0, rel=0.03)
-    assert pooled(exact, noise=True) == pytest.approx(2.0, rel=0.1)
+    assert pooled_percent(exact) == pytest.approx(2.0, rel=0.03)
+    assert noise_percent(exact) == pytest.approx(2.0, rel=0.1)
 
 
 def test_bad_baselines_are_refused_in_words():

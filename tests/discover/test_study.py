@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from discover.motion_fit import observe
 from discover.report.verdict import error_lines
+from discover.rows import accuracy, pooled_percent
 from discover.study import StudyOptions, run_study
 from tests.discover.exact import DEVICE_10, DEVICE_12, campaign, fractional, integer, segmented
 
@@ -59,10 +61,7 @@ def test_prediction_of_held_out_records_is_close_to_the_noise_free_force():
     c1, c2 = DEVICE_12.laminar_coefficients
     noisy = run_study(campaign(integer(370.38, c2, c1, 0.0, 400.0), seed=3))
     clean = campaign(integer(370.38, c2, c1, 0.0, 400.0), noise=0.0, frequencies=(0.7, 3.0, 8.0))
-    from discover.motion_fit import observe
-    from discover.study.accuracy import pooled_percent, predict
-
-    predicted = [predict(observe(r), noisy.model.bands[0].model) for r in clean.records]
+    predicted = [accuracy(observe(r), noisy.model.bands[0].model) for r in clean.records]
     assert pooled_percent(predicted) < 0.5
 
 
@@ -124,8 +123,6 @@ def test_documents_hold_the_contract_keys():
 
 def test_units_do_not_change_the_answer():
     base = campaign(fractional(*M2), frequencies=(0.5, 1.0, 3.0, 9.0))
-    from dataclasses import replace
-
     scaled = replace(
         base, records=tuple(replace(r, force=1000.0 * r.force) for r in base.records)
     )
