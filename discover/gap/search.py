@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from discover.gap.baseline import Baseline
+from discover.gap.baseline import Baseline, few_curves
 from discover.posterior.assess import Assessed
 from discover.posterior.grow import Candidate, Step, grown
 from discover.posterior.left_out import left_out_growth
-from discover.posterior.reversal import reversal_of
 from discover.rows import Accuracy, accuracy, pooled_percent
 from models.constitutive import FittedTerm, ForceModel
 
@@ -91,7 +90,9 @@ class Search:
 def stage(baseline: Baseline, assessed: Assessed) -> Stage:
     """Return what an assessed model makes of every record."""
     own = tuple(p.fitted for p in assessed.model.terms if not p.held)
-    models = baseline.with_terms(_few_curves(baseline, assessed, own))
+    if not baseline.fixed:
+        own = few_curves(baseline.assessor, assessed, ForceModel(own)).terms
+    models = baseline.with_terms(own)
     accuracies = tuple(
         accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
     )
@@ -99,20 +100,6 @@ def stage(baseline: Baseline, assessed: Assessed) -> Stage:
     return Stage(
         assessed, tuple(models), accuracies, held or _left_out(baseline, assessed, accuracies)
     )
-
-
-def _few_curves(
-    baseline: Baseline, assessed: Assessed, terms: Sequence[FittedTerm]
-) -> tuple[FittedTerm, ...]:
-    """Return a model's terms, friction by the few curves that make the one that was found."""
-    if baseline.fixed:
-        return tuple(terms)
-    found = reversal_of(baseline.assessor, assessed)
-    if found is None:
-        return tuple(terms)
-    name = found.terms[0].id
-    place = next(i for i, t in enumerate(terms) if t.id == name)
-    return (*terms[:place], *found.terms, *terms[place + 1 :])
 
 
 def _left_out(
