@@ -29,7 +29,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     step = motion.sampling or motion.step
     force = force_of(motion)
     delay = share(motion, shape) * delay_at(step, coefficient, shape)
-    if delay == 0.0:  # as in all other tests, where it is that of one
+    if delay == 0.0:  # as of any other test with `only`
         return force
     if shape.get("resampled", 0.0) > 0.0:
         return read_late(force, motion.time, int(shape["resampled"]))(delay)
