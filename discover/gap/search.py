@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.gap.baseline import Baseline
+from discover.gap.baseline import Baseline, few_curves
 from discover.posterior.assess import Assessed
 from discover.posterior.grow import Candidate, Step, grown
 from discover.posterior.left_out import left_out
-from discover.posterior.reversal import reversal_of
 from discover.rows import Accuracy, accuracy, pooled_percent
 from models.constitutive import FittedTerm, ForceModel
 
@@ -95,7 +94,9 @@ def stage(baseline: Baseline, assessed: Assessed) -> Stage:
     """Return what an assessed model makes of every record."""
     best = assessed if baseline.fixed else baseline.assessor.predicting(assessed)
     own = tuple(p.fitted for p in best.model.terms if not p.held)
-    models = baseline.with_terms(_few_curves(baseline, assessed, best, own))
+    if not baseline.fixed:
+        own = few_curves(baseline.assessor, assessed, best, ForceModel(own)).terms
+    models = baseline.with_terms(own)
     accuracies = tuple(
         accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
     )
@@ -103,20 +104,6 @@ def stage(baseline: Baseline, assessed: Assessed) -> Stage:
     return Stage(
         assessed, best, tuple(models), accuracies, held or _left_out(baseline, best, accuracies)
     )
-
-
-def _few_curves(
-    baseline: Baseline, assessed: Assessed, best: Assessed, terms: Sequence[FittedTerm]
-) -> tuple[FittedTerm, ...]:
-    """Return a model's terms, friction by the few curves that make the one that was found."""
-    if baseline.fixed:
-        return tuple(terms)
-    found = reversal_of(baseline.assessor, assessed, best)
-    if found is None:
-        return tuple(terms)
-    name = found.terms[0].id
-    place = next(i for i, t in enumerate(terms) if t.id == name)
-    return (*terms[:place], *found.terms, *terms[place + 1 :])
 
 
 def _left_out(

@@ -104,10 +104,10 @@ def _tried(
     ranked = sorted(best.values(), key=lambda g: -g[0].value)
     most = ranked[0][0].value
     found: list[Candidate] = []
-    for place, one in enumerate(ranked):
+    for rank, one in enumerate(ranked):
         value = one[0].value
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
-        if place >= _NAMES or value < max(_HOPELESS, near * most - _NATS):
+        if rank >= _NAMES or value < max(_HOPELESS, near * most - _NATS):
             found.append(Candidate(one[0].trial.id, now.value + min(value, 0.0), None))
         else:
             found.append(_fitted(assessor, now, one))
@@ -129,7 +129,8 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
         terms = _begun(gain)
         model = now.model.plus(*terms)
         steps = 3 if len(chosen) > 1 else 12
-        begun.append((assessor.assess(model, now.place.towards(assessor.space.quiet), iterations=steps), gain))
+        place = now.place.towards(assessor.space.quiet)
+        begun.append((assessor.assess(model, place, iterations=steps), gain))
     begun.sort(key=lambda b: -(b[0].value + b[1].trial.log_prior))
     first, gain = begun[0]
     first = assessor.assess(first.model, first.place)

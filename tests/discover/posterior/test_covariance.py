@@ -128,7 +128,7 @@ def test_the_curve_s_coefficients_are_those_of_a_ridge(problem):
 def windows(seed=0):
     """Return a record of random motion, longer than a unit's rows may be."""
     rng = np.random.default_rng(seed)
-    time = np.arange(6000) / 200.0
+    time = np.arange(12000) / 200.0
     tones = 2.0 * np.pi * rng.uniform(0.3, 8.0, 60)
     turned = np.outer(time, tones) + rng.uniform(0.0, 6.0, 60)
     size = 1e-3 * np.minimum(1.0, 3.0 / tones)
