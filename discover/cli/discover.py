@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
+from pathlib import Path
+
 import typer
 
 from discover.cli import options
@@ -41,8 +44,9 @@ def discover(
     from discover.readers import read_campaign
     from discover.report.document import json_text
     from discover.report.study import study_figures, study_report
-    from discover.report.verdict import error_lines, verdict_lines
     from discover.study import StudyOptions, run_study
+    from discover.study.verdict import verdict_lines
+    from discover.words import error_lines
 
     with working(f"Reading {source}"):
         measured = read_campaign(source)
@@ -75,7 +79,19 @@ def discover(
         name="study.json",
         folder=folder,
         files=files,
-        summary=(*error_lines(document), *verdict_lines(document)),
+        summary=(*error_lines(document), *verdict_lines(document), next_command(source, folder)),
         as_json=as_json,
     )
     return 0
+
+
+def next_command(campaign: Path, folder: Path) -> str:
+    """Return the line that names what the model found still misses, to copy.
+
+    Examples
+    --------
+    >>> next_command(Path("my rig"), Path("out"))
+    "Next: inerter gap 'my rig' --model out/model.json"
+    """
+    command = ["inerter", "gap", str(campaign), "--model", str(folder / "model.json")]
+    return f"Next: {shlex.join(command)}"

@@ -13,8 +13,6 @@ from discover.rows import Unexplained
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 
 Interval = tuple[float, float]
-CLOSED = 1.15
-"""Times the noise floor, up to which a gap is closed to it."""
 
 
 @dataclass(frozen=True)

@@ -105,15 +105,6 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
             values += [r[f"{key}_after_percent"] for r in rounds]
             if all(v is not None for v in values):
                 axes.plot(range(len(values)), values, "o-", color=colour, label=label)
-            formulas = {
-                i: r["corrected"][f"{key}_by_formula_percent"]
-                for i, r in enumerate(rounds, start=1)
-                if r.get("corrected")
-            }
-            if formulas and None not in formulas.values():
-                label = "by formula" if key == "gap" else ""
-                places, levels = list(formulas), list(formulas.values())
-                axes.plot(places, levels, "o", mfc="none", color=colour, label=label)
         if document.get("noise_percent"):
             axes.axhline(
                 document["noise_percent"],

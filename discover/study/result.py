@@ -13,6 +13,7 @@ from discover.header import document_header
 from discover.next_test import NextTest
 from discover.records import Finding
 from discover.rows import Unexplained
+from discover.study.verdict import headline
 from models.constitutive import FittedTerm, SegmentedModel
 
 Interval = tuple[float, float]
@@ -260,6 +261,7 @@ class Study:
         """Return the document ``study.json``."""
         result = {
             **self._header("study"),
+            "headline": "",  # its place; said below, from the rest
             "coordinate": self.coordinate,
             "relative_error_percent": self.relative_error_percent,
             "identifiable": self.identifiable,
@@ -272,6 +274,7 @@ class Study:
         }
         if self.held_out_relative_error_percent is not None:
             result["held_out_relative_error_percent"] = self.held_out_relative_error_percent
+        result["headline"] = headline(result)
         return result
 
     def model_dict(self) -> dict[str, Any]:

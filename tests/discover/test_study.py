@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from discover.report.verdict import error_lines
+from discover.words import error_lines
 from discover.study import StudyOptions, run_study
 from tests.discover.exact import DEVICE_10, DEVICE_12, campaign, fractional, integer, segmented
 

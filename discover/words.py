@@ -204,3 +204,33 @@ def capitalize_first(text: str) -> str:
     'IOIM and FOIM'
     """
     return text[:1].upper() + text[1:]
+
+
+def named_line(line: str) -> tuple[str, str]:
+    """Return a line of an answer as its name and its sentence.
+
+    Examples
+    --------
+    >>> named_line("Structure: one band")
+    ('Structure', 'One band')
+    """
+    name, _, text = line.partition(": ")
+    return name, capitalize_first(text)
+
+
+def error_lines(document: Mapping[str, Any]) -> list[str]:
+    """Return what is wrong with the data, which no answer can repair."""
+    return _finding_lines(document, "error", "Error in the data")
+
+
+def warning_lines(document: Mapping[str, Any]) -> list[str]:
+    """Return what a reader of the answer has to know, for the terminal."""
+    return _finding_lines(document, "warning", "Warning")
+
+
+def _finding_lines(document: Mapping[str, Any], level: str, name: str) -> list[str]:
+    return [
+        f"{name}: {f['record'] + ': ' if f.get('record') else ''}{f['text']}"
+        for f in document.get("findings", ())
+        if f["level"] == level
+    ]
