@@ -78,6 +78,22 @@ def percent(value: float | None) -> str:
     return "–" if value is None else f"{significant(value, 3)}{THIN_SPACE}%"
 
 
+def remainder_text(remainder: Mapping[str, Any]) -> str:
+    """Return what no term explains, with its interval.
+
+    Examples
+    --------
+    >>> remainder_text({"value": 0.5, "interval": [0.3, 0.7]}).split()
+    ['0.5', '%', '(0.3', 'to', '0.7', '%)']
+    >>> remainder_text({"value": 0.0, "interval": [0.0, 0.0]})
+    'none'
+    """
+    low, high = remainder["interval"]
+    if not high:
+        return "none"
+    return f"{percent(remainder['value'])} ({significant(low, 3)} to {percent(high)})"
+
+
 def probability(value: float | None) -> str:
     """Return a probability in percent that never rounds to a certainty it is not.
 

@@ -41,8 +41,8 @@ def discover(
     folder = result_folder("discover", source, out)
 
     # Loaded here: --help and complaints about options need no numerics.
+    from discover.document import json_text
     from discover.readers import read_campaign
-    from discover.report.document import json_text
     from discover.report.study import study_figures, study_report
     from discover.study import StudyOptions, run_study
     from discover.study.verdict import verdict_lines

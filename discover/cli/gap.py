@@ -65,10 +65,10 @@ def gap(
     from discover.cli.baseline_notes import baseline_notes
     from discover.cli.named_model import named_model, paper_values
     from discover.cli.own_effects import asked_effects, listed_effects, own_notes
+    from discover.document import json_text
     from discover.gap import FRACTIONAL, close_gap, term_ids
     from discover.motion_gap import motion_before_and_after, require_system
     from discover.readers import read_campaign
-    from discover.report.document import json_text
     from discover.report.gap import gap_figures, gap_lines, gap_report
     from discover.words import warning_lines
     from models.terms import TERMS, own_terms

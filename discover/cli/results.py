@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 from rich.console import Console
 
-from discover.report.document import json_text
+from discover.document import json_text
 from discover.report.folder import check_replaceable, write_folder
 from discover.report.lock import folder_lock
 from models.checks import InputError, InputErrors

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from discover.words import listed, percent, probability, short_name, significant
+from discover.words import (
+    listed,
+    percent,
+    probability,
+    remainder_text,
+    short_name,
+    significant,
+)
 
 CLOSED = 1.15
 """Times the noise floor, up to which a gap is closed to it."""
@@ -127,10 +134,8 @@ def _left_over(document: Mapping[str, Any]) -> str:
     parts = []
     remainder = document.get("remainder_percent")
     if remainder:
-        low, high = remainder["interval"]
         parts.append(
-            f"{percent(remainder['value'])} ({significant(low, 2)} to {percent(high)}) of the"
-            " force, beyond noise, every record counting alike"
+            f"of the force, beyond noise, {remainder_text(remainder)}; every record counts alike"
         )
     if document.get("shape"):
         parts.append(str(document["shape"]))

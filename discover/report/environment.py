@@ -10,6 +10,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from discover import words
+from discover.report.equation import equation
 from discover.shape_words import shape
 from discover.study.verdict import not_ruled_out
 
@@ -64,6 +65,7 @@ def environment() -> jinja2.Environment:
         counted=words.counted,
         band_range=words.band_range,
         not_ruled_out=not_ruled_out,
+        equation=equation,
         capitalize_first=words.capitalize_first,
         prose=prose,
         spread=words.spread,

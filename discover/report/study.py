@@ -18,11 +18,10 @@ from discover.study.verdict import (
     extras,
     friction_text,
     next_purpose,
-    remainder_text,
     structure_name,
     verdict_lines,
 )
-from discover.words import named_line, percent, significant
+from discover.words import named_line, percent, remainder_text, significant
 
 
 def study_figures(document: Mapping[str, Any], data: StudyFigureData) -> dict[str, str]:

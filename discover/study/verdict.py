@@ -15,6 +15,7 @@ from discover.words import (
     listed,
     percent,
     probability,
+    remainder_text,
     short_name,
     significant,
 )
@@ -202,18 +203,6 @@ def _range(values: Sequence[float]) -> str:
     return percent(most) if most - least < 0.1 * most else f"{percent(least)} to {percent(most)}"
 
 
-def remainder_text(remainder: Mapping[str, Any]) -> str:
-    """Return what no term explains, with its interval.
-
-    Examples
-    --------
-    >>> remainder_text({"value": 0.5, "interval": [0.3, 0.7]}).split()
-    ['0.5', '%', '(0.3', 'to', '0.7', '%)']
-    """
-    low, high = remainder["interval"]
-    return f"{percent(remainder['value'])} ({significant(low, 3)} to {percent(high)})"
-
-
 def remainder_line(document: Mapping[str, Any]) -> str:
     """Say how much of the force neither a term nor noise explains."""
     texts = [
@@ -224,7 +213,7 @@ def remainder_line(document: Mapping[str, Any]) -> str:
         texts = [f"{t} in band {i}" for i, t in enumerate(texts, start=1)]
     if not texts:
         return ""
-    return f"Left over: {listed(texts)} of the force, beyond noise, every record counting alike."
+    return f"Left over: of the force, beyond noise, {listed(texts)}; every record counts alike."
 
 
 def certainty_line(document: Mapping[str, Any]) -> str:

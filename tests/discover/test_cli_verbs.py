@@ -32,7 +32,7 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_discover_prints_the_answer_and_what_to_do_next_and_writes_the_folder(campaign, here, capsys):
+def test_discover_prints_the_answer_and_what_is_next_and_writes_the_folder(campaign, here, capsys):
     assert main(["discover", str(campaign)]) == 0
     out, err = capsys.readouterr()
     assert err == ""

@@ -46,7 +46,7 @@ def test_lines_name_effects_with_alternatives_and_both_gaps():
         "Gap: 18.3 % before, 1.2 % after; 1.3 % on records that were not fitted; noise 1.1 %."
     )
     assert lines[5] == (
-        "Left over: 0.21 % (0.1 to 0.32 %) of the force, beyond noise, every record counting alike."
+        "Left over: of the force, beyond noise, 0.21 % (0.1 to 0.32 %); every record counts alike."
     )
 
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from discover.words import error_lines
 from discover.study import StudyOptions, run_study
+from discover.words import error_lines
 from tests.discover.exact import DEVICE_10, DEVICE_12, campaign, fractional, integer, segmented
 
 M1 = (370.38 * 19.25, 0.48, 400.0)
@@ -59,8 +59,9 @@ def test_prediction_of_held_out_records_is_close_to_the_noise_free_force():
     c1, c2 = DEVICE_12.laminar_coefficients
     noisy = run_study(campaign(integer(370.38, c2, c1, 0.0, 400.0), seed=3))
     clean = campaign(integer(370.38, c2, c1, 0.0, 400.0), noise=0.0, frequencies=(0.7, 3.0, 8.0))
-    from discover.motion_fit import observe
     from discover.study.accuracy import pooled_percent, predict
+
+    from discover.motion_fit import observe
 
     predicted = [predict(observe(r), noisy.model.bands[0].model) for r in clean.records]
     assert pooled_percent(predicted) < 0.5
