@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 
 import typer
 
 from discover.cli import options
-from discover.cli.invocation import Invocation
-from discover.cli.results import after_reading, deliver, result_folder, working
-from discover.cli.shipped import shipped_campaign
+from discover.cli.invocation import Invocation, to_copy
+from discover.cli.results import after_reading, deliver, result_folder, shown_path, working
+from discover.cli.shipped import HIDDEN, HIDDEN_MODEL, shipped_campaign
 from models.checks import number, one_of
 
 
@@ -79,19 +78,24 @@ def discover(
         name="study.json",
         folder=folder,
         files=files,
-        summary=(*error_lines(document), *verdict_lines(document), next_command(source, folder)),
+        summary=(*error_lines(document), *verdict_lines(document), next_command(campaign, folder)),
         as_json=as_json,
     )
     return 0
 
 
-def next_command(campaign: Path, folder: Path) -> str:
-    """Return the line that names what the model found still misses, to copy.
+def next_command(campaign: Path | None, folder: Path) -> str:
+    """Return the line to copy: what the model misses, of the shipped campaign another one's effect.
 
-    Examples
-    --------
-    >>> next_command(Path("my rig"), Path("out"))
-    "Next: inerter gap 'my rig' --model out/model.json"
+    Parameters
+    ----------
+    campaign : Path or None
+        That was studied; None for the shipped one.
+    folder : Path
+        Of its results.
     """
-    command = ["inerter", "gap", str(campaign), "--model", str(folder / "model.json")]
-    return f"Next: {shlex.join(command)}"
+    if campaign is None:
+        hidden = shown_path(shipped_campaign(HIDDEN))
+        return f"Next: {to_copy(['gap', hidden, '--model', HIDDEN_MODEL])}"
+    model = str(folder / "model.json")
+    return f"Next: {to_copy(['gap', str(campaign), '--model', model])}"

@@ -172,10 +172,10 @@ def deliver(
     for line in summary:
         typer.echo(line)
     last = written / ("report.html" if "report.html" in files else name)
-    typer.echo(f"{'Report' if last.name == 'report.html' else 'Document'}: {_shown(last)}")
+    typer.echo(f"{'Report' if last.name == 'report.html' else 'Document'}: {shown_path(last)}")
 
 
-def _shown(path: Path) -> str:
+def shown_path(path: Path) -> str:
     """Return `path` as seen from here where it lies below, else in full."""
     here = Path(os.getcwd())
     return str(path.relative_to(here)) if path.is_relative_to(here) else str(path)

@@ -164,8 +164,9 @@ def friction_text(band: Mapping[str, Any]) -> str:
     size = sum(t["coefficient"] for t in band["terms"] if t["id"] == FRICTION)
     text = f"{significant(size, 3)} N, {friction['curve']}"
     if "presliding_displacement" in friction or "transition_speed" in friction:
-        over = "a displacement" if "presliding_displacement" in friction else "a speed"
-        text += f", over {over} with {probability(friction['probability'])}"
+        pair = ("a displacement", "a speed")
+        over, other = pair if "presliding_displacement" in friction else pair[::-1]
+        text += f": {over} and not {other}, {probability(friction['probability'])}"
     if friction["differs_by_record"] >= _WORTH_SAYING:
         differs = percent(100.0 * friction["differs_by_record"])
         text += f"; it differs between records by {differs}"

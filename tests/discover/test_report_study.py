@@ -154,7 +154,7 @@ def test_verdict_says_in_each_line_one_thing_and_names_the_convention():
         "Beside it: stiffness 1 210 (1 190 to 1 230) N/m, 93 %, or cubic stiffness (6 %)."
     )
     assert "it differs between records by 2.1 %" in lines["Friction"]
-    assert "over a displacement with 98 %" in lines["Friction"]
+    assert ": a displacement and not a speed, 98 %" in lines["Friction"]
     assert "0.52 % (0.31 to 0.68 %) in band 1" in lines["Left over"]
     assert "98 (84 to 117), paper convention, criterion 100" in lines["Dean check"]
     assert "IOIM-linear (17 %) not ruled out" in lines["Certainty"]
