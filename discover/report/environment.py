@@ -11,6 +11,7 @@ from markupsafe import Markup, escape
 
 from discover import words
 from discover.report.equation import equation
+from discover.report.friction_parts import whole_friction
 from discover.shape_words import shape
 from discover.study.verdict import not_ruled_out
 
@@ -42,7 +43,7 @@ def prose(text: str) -> Markup:
     '5_% of it grows as frequency<sup>0.4 ± 0.1</sup>'
     """
     plain = str(escape(text)).replace(" %", f"{words.THIN_SPACE}%")
-    raised = re.sub(r"\^\(([^()]+)\)", r"<sup>\1</sup>", plain)
+    raised = re.sub(r"\^(?:\(([^()]+)\)|(\w)\b)", r"<sup>\1\2</sup>", plain)
     return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", raised))
 
 
@@ -66,6 +67,7 @@ def environment() -> jinja2.Environment:
         band_range=words.band_range,
         not_ruled_out=not_ruled_out,
         equation=equation,
+        whole_friction=whole_friction,
         capitalize_first=words.capitalize_first,
         prose=prose,
         spread=words.spread,

@@ -10,19 +10,23 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
+from discover.shape_words import shape
 from discover.words import short_name, significant
 
 Entry = Mapping[str, Any]
 
 _X = Markup("<mi>x</mi>")
-_V = Markup('<mover accent="true"><mi>x</mi><mo>˙</mo></mover>')
-_A = Markup('<mover accent="true"><mi>x</mi><mo>¨</mo></mover>')
+_V = Markup("<mi>v</mi>")
+_A = Markup("<mi>a</mi>")
+_CURVE = Markup("<mrow><mi>s</mi><mo>(</mo>{}<mo>,</mo>{}<mo>)</mo></mrow>").format(_X, _V)
 _SPEED = Markup("<mrow><mo>|</mo>{}<mo>|</mo></mrow>").format(_V)
 _SIGN = Markup("<mrow><mi>sgn</mi><mo>&#x2061;</mo>{}</mrow>").format(_V)
 
 
 def equation(terms: Sequence[Entry]) -> Markup:
     """Return the force as a sum of terms with their numbers, in SI.
+
+    Displacement, velocity and acceleration are x, v and a; s is a curve of friction from -1 to 1.
 
     Parameters
     ----------
@@ -34,7 +38,7 @@ def equation(terms: Sequence[Entry]) -> Markup:
     >>> str(equation([{"id": "stiffness", "coefficient": -20.0}])).count("<math>")
     2
     """
-    parts = [_math(Markup("<mi>F</mi><mo>=</mo>"))]
+    parts = [_math(Markup('<mi>F</mi><mo form="infix">=</mo>'))]
     changes = []
     for term in terms:
         if term["id"] in _CHANGES:
@@ -55,8 +59,9 @@ def _math(inside: Markup) -> Markup:
 
 def _signed(value: float, *, first: bool) -> Markup:
     sign = "−" if value < 0.0 else "" if first else "+"
-    number = Markup("<mn>{}</mn>").format(significant(abs(value), 4))
-    return (Markup("<mo>{}</mo>").format(sign) if sign else Markup("")) + number
+    number = Markup('<mn>{}</mn><mspace width="0.17em"/>').format(significant(abs(value), 4))
+    form = "prefix" if first else "infix"
+    return (Markup('<mo form="{}">{}</mo>').format(form, sign) if sign else Markup("")) + number
 
 
 def _power(base: Markup, exponent: object) -> Markup:
@@ -72,14 +77,7 @@ def _power_law(term: Entry) -> Markup:
 
 
 def _friction(term: Entry) -> Markup:
-    for name, over in (("presliding", "x"), ("transition_speed", "v")):
-        if term.get(name):
-            size = significant(1e3 * float(term[name]), 3)
-            unit = "mm" if over == "x" else "mm/s"
-            return Markup("<msub>{}<mrow><mn>{}</mn><mtext> {}</mtext></mrow></msub>").format(
-                Markup("<mi>sgn</mi>"), size, unit
-            ) + _V
-    return _SIGN
+    return _CURVE if shape(term) or term.get("parts") else _SIGN
 
 
 _FACTORS: Mapping[str, Callable[[Entry], Markup]] = {
