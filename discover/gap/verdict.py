@@ -19,11 +19,11 @@ CLOSED = 1.15
 
 _VERDICTS = {
     "agrees": "model and measurement agree within the noise; nothing is missing",
-    "closed": "the gap is closed to the noise floor",
-    "reduced": "the gap is smaller, but more is left than noise",
+    "closed": "with {} added the gap is down to the noise",
+    "reduced": "with {} added the gap is smaller, but more is left than noise",
     "unexplained": "something is missing that no effect in the catalogue explains",
 }
-_LINES_QUIET = "nothing more shows in the tests' own lines"
+_LINES_QUIET = "with {} added nothing more shows in the tests' own lines"
 _NOT_SHOWN = "nothing is missing that these tests would show"
 _UNASKED = "something is missing that none of the effects asked for explains"
 _FALLS = 0.995  # of a gap: what does not fall below it is not said to fall
@@ -40,10 +40,11 @@ def verdict_lines(document: Mapping[str, Any]) -> list[str]:
     """
     verdict = str(document["verdict"])
     dropped = {name for r in document["rounds"] for name in r.get("dropped", ())}
-    names = [_missing(r) for r in document["rounds"] if r["effect"] not in dropped]
-    lines = [f"Verdict: {verdict}: {_said(document, verdict)}."]
-    if names:
-        lines.append(f"Missing: {listed(names)}.")
+    kept = [r for r in document["rounds"] if r["effect"] not in dropped]
+    added = listed(short_name(str(r["effect"])) for r in kept)
+    lines = [f"Verdict: {verdict}: {_said(document, verdict).format(added)}."]
+    if kept:
+        lines.append(f"Missing: {listed(_missing(r) for r in kept)}.")
         for number, entry in enumerate(document["rounds"], start=1):
             lines.append(f"Round {number}: {round_text(entry)}.")
     held_out = document.get("final_held_out_gap_percent")

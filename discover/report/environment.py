@@ -59,6 +59,7 @@ def environment() -> jinja2.Environment:
     )
     engine.filters.update(
         term_name=words.term_name,
+        short_name=words.short_name,
         significant=words.significant,
         percent=words.percent,
         probability=words.probability,
