@@ -26,8 +26,8 @@ check: $(VENV)/.installed-dev ## style, types and layers
 bench: $(VENV)/.installed-dev ## times and errors beside other packages; keeps the table
 	$(BIN)/python -m tests.benchmarks
 
-calibration: $(VENV)/.installed-dev ## the seeded calibration study of structures and boundaries
-	$(BIN)/python -m tests.calibration --jobs $(JOBS)
+calibration: $(VENV)/.installed-dev ## the calibration study of structures; a run that was stopped goes on from build/
+	$(BIN)/python -m tests.calibration.structures --jobs $(JOBS)
 
 blind: $(VENV)/.installed-dev ## the blind study of missing effects, both sets; a run that was stopped goes on from build/
 	$(BIN)/python -m tests.calibration.gap --set both --jobs $(JOBS)

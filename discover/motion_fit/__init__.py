@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from joblib import Parallel, delayed
 
-from discover.motion_fit.band import observe_band, observe_periodic
+from discover.motion_fit.band import observe_band
 from discover.motion_fit.harmonic import observe_sine
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
+from discover.motion_fit.periodic import observe_periodic
 from discover.record_kind import classify
 from discover.records import Record
 from models.checks import InputError

@@ -1,4 +1,4 @@
-"""Records that are no sine test: band-limited motion, and lines of tapered windows."""
+"""Records that do not repeat: band-limited motion, and lines of tapered windows."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ import numpy as np
 from scipy.ndimage import median_filter
 from scipy.special import gammaincinv
 
+from discover.motion_fit.band_noise import band_noise
 from discover.motion_fit.noise import power_density
 from discover.motion_fit.observation import Lines, Observation, Window
 from discover.records import Record
 from models.checks import Array, InputError
-from models.fractional import band_limited_derivative, low_pass, spectral_derivative
+from models.fractional import band_limited_derivative, low_pass
 from models.motion import Motion
 
 _SIGNAL_TO_NOISE = 1000.0  # of the displacement's power, at the edge of the excited band
-_GUARD = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
-_NYQUIST_SHARE = 0.9
-_RELATIVE_FLOOR = 1e-6
+EDGE = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
+_NYQUIST_SHARE = 0.95
+_FEWEST_LINES = 8
+_NARROWER = 3  # times at most, that the band is narrowed to where force follows motion
+RELATIVE_FLOOR = 1e-6
 _TAPER = 0.1
 _EDGE_PERIODS = 4.0
 _LINES_PER_WINDOW = 40
@@ -42,29 +45,40 @@ def floor_of(frequencies: Array, density: Array, above: float) -> float:
     return float(np.median(tail) / np.log(2.0)) if tail.size else 0.0
 
 
-def choose_cutoff(displacement: Array, step: float, *, where: str = "") -> float:
+def choose_cutoff(displacement: Array, step: float) -> float:
     """Return the end of the band in which displacement stands clear of its noise floor, Hz.
 
-    The edge is where it last stands 30 dB above the floor; the band ends a tenth below it.
-
-    Raises
-    ------
-    InputError
-        Where the displacement nowhere stands clear of its noise.
+    The edge is where it last stands 30 dB above the floor; the band ends a tenth below it. A
+    displacement that has no floor to stand above, as it moves at all frequencies, ends near the
+    Nyquist frequency; where the force no longer follows it is for the force to tell.
     """
     frequencies, density = power_density(displacement - displacement.mean(), step)
-    nyquist = frequencies[-1]
+    nyquist = float(frequencies[-1])
     floor = floor_of(frequencies, density, 0.6 * nyquist)
     clear = np.flatnonzero(smooth(density) > _SIGNAL_TO_NOISE * floor)
-    if clear.size == 0:
-        raise InputError(
-            "displacement",
-            expected="30 dB above its noise in some band",
-            found="noise at all frequencies",
-            where=where,
+    edge = EDGE * frequencies[clear[-1]] if clear.size else nyquist
+    return float(min(max(edge, _FEWEST_LINES * frequencies[1]), _NYQUIST_SHARE * nyquist))
+
+
+def _band_motion(record: Record, usable: slice, cutoff: float) -> Motion:
+    """Return the motion up to a frequency, Hz."""
+    assert record.displacement is not None
+    step, x = record.step, record.displacement[usable]
+    reference = x - x[0]
+    edge_noise = float(np.clip(_white_noise(x, step, cutoff) / np.std(x), 1e-7, 1e-2))
+
+    def differentiate(orders: Array) -> Array:
+        return np.asarray(
+            band_limited_derivative(
+                reference, orders, step, cutoff=cutoff, edge_noise=edge_noise
+            )
         )
-    end = max(_GUARD * frequencies[clear[-1]], 8.0 * frequencies[1])
-    return float(min(end, _NYQUIST_SHARE * nyquist))
+
+    position, velocity, acceleration = differentiate(np.array([0.0, 1.0, 2.0]))
+    motion = Motion(
+        record.time[usable], position + x[0], velocity, acceleration, differentiate, "band-limited"
+    )
+    return _measured(record, usable, motion, cutoff)
 
 
 def _measured(record: Record, usable: slice, motion: Motion, cutoff: float) -> Motion:
@@ -87,19 +101,12 @@ def _measured(record: Record, usable: slice, motion: Motion, cutoff: float) -> M
     )
 
 
-def _line_variance(
-    displacement: Array, force: Array, step: float, cutoff: float, lines: Array
-) -> tuple[Array, float, float]:
-    """Return noise density of force at `lines`, and the rms noise of force and displacement."""
-    frequencies, of_x = power_density(displacement - displacement.mean(), step)
-    _, of_f = power_density(force - force.mean(), step)
-    nyquist = frequencies[-1]
-    start = min(1.3 * cutoff, 0.95 * nyquist)
-    force_floor = floor_of(frequencies, of_f, start)
-    x_floor = floor_of(frequencies, of_x, max(start, 0.6 * nyquist))
-    gain = smooth(of_f) / np.maximum(smooth(of_x), 1e-300)
-    density = force_floor + x_floor * np.interp(lines, frequencies, gain)
-    return density, float(np.sqrt(force_floor * nyquist)), float(np.sqrt(x_floor * nyquist))
+def _white_noise(displacement: Array, step: float, cutoff: float) -> float:
+    """Return the rms of white noise of the density that a displacement has above its band, m."""
+    frequencies, density = power_density(displacement - displacement.mean(), step)
+    nyquist = float(frequencies[-1])
+    above = max(min(1.3 * cutoff, 0.95 * nyquist), 0.6 * nyquist)
+    return float(np.sqrt(floor_of(frequencies, density, above) * nyquist))
 
 
 def _pieces(size: int, cutoff: float) -> list[tuple[int, Array]]:
@@ -160,38 +167,28 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         raise InputError("displacement", expected="given", where=record.file)
     step = record.step
     time, x, force = record.time[usable], record.displacement[usable], record.force[usable]
-    cutoff = choose_cutoff(x, step, where=record.file)
-    reference = x - x[0]
-    _, _, x_noise = _line_variance(x, force, step, cutoff, np.zeros(1))
-    edge_noise = float(np.clip(x_noise / np.std(x), 1e-7, 1e-2))
-
-    def differentiate(orders: Array) -> Array:
-        return np.asarray(
-            band_limited_derivative(
-                reference, orders, step, cutoff=cutoff, edge_noise=edge_noise
-            )
-        )
-
-    position, velocity, acceleration = differentiate(np.array([0.0, 1.0, 2.0]))
-    motion = Motion(
-        time, position + x[0], velocity, acceleration, differentiate, "band-limited"
-    )
-    motion = _measured(record, usable, motion, cutoff)
-    pieces = _pieces(time.size, cutoff * step)
-    inner = slice(pieces[0][0], pieces[-1][0] + pieces[-1][1].size)
+    cutoff = choose_cutoff(x, step)
+    for _ in range(_NARROWER):
+        motion = _band_motion(record, usable, cutoff)
+        pieces = _pieces(time.size, cutoff * step)
+        inner = slice(pieces[0][0], pieces[-1][0] + pieces[-1][1].size)
+        found = band_noise(motion, force, step, cutoff, inner)
+        if found.follows > EDGE * cutoff:
+            break
+        cutoff = found.follows
+    noise = found.spectrum
+    velocity = motion.velocity
     mass = sum(float(np.sum(taper**2)) for _, taper in pieces)
     mean_power = float(np.mean(force**2))
     windows = []
-    noise = (0.0, 0.0)
     for start, taper in pieces:
         size = taper.size
         inside = slice(start, start + size)
         count = int(np.floor(cutoff * size * step)) + 1
         project = _projection(inside, taper, count)
         frequencies = np.arange(count, dtype=np.float64) / (size * step)
-        density, *levels = _line_variance(x, force, step, cutoff, frequencies)
-        noise = (levels[0], levels[1])
-        variance = np.maximum(density / (2.0 * size * step), _RELATIVE_FLOOR**2 * mean_power)
+        density = noise.at(np.maximum(frequencies, frequencies[1]))
+        variance = np.maximum(density / (2.0 * size * step), RELATIVE_FLOOR**2 * mean_power)
         v_rms, x_rms = float(np.std(velocity[inside])), float(np.std(x[inside]))
         windows.append(
             Window(
@@ -215,80 +212,8 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         time=time[inner],
         measured=np.asarray(low_pass(force, step, cutoff=cutoff))[inner],
         at_samples=lambda column: np.asarray(low_pass(column, step, cutoff=cutoff))[inner],
-        displacement_noise=noise[1],
-        force_noise=noise[0],
-        cutoff=cutoff,
-        usable=usable,
-    )
-
-
-def observe_periodic(record: Record, usable: slice, period: int) -> Observation:
-    """Return the observation of a record that repeats every `period` samples.
-
-    Periods are averaged; what does not repeat is the noise. Derivatives are spectral.
-    """
-    if record.displacement is None:
-        raise InputError("displacement", expected="given", where=record.file)
-    step = record.step
-    repeats = record.displacement[usable].size // period
-    stop = usable.start + repeats * period if usable.start else repeats * period
-    usable = slice(usable.start or 0, stop)
-    each_x = record.displacement[usable].reshape(repeats, period)
-    each_f = record.force[usable].reshape(repeats, period)
-    x, force = each_x.mean(axis=0), each_f.mean(axis=0)
-    mean = float(x.mean())
-    cutoff = choose_cutoff(np.tile(x, 2), step, where=record.file)
-    count = int(np.floor(cutoff * period * step)) + 1
-    keep = np.fft.rfft(x - mean)
-    # Whole periods need no guard: what moves at the band's edge is part of the motion too.
-    keep[int(np.ceil(cutoff / _GUARD * period * step)) + 1 :] = 0.0
-    smooth_x = np.fft.irfft(keep, n=period)
-
-    def differentiate(orders: Array) -> Array:
-        return np.asarray(spectral_derivative(smooth_x, orders, step))
-
-    _, velocity, acceleration = differentiate(np.array([0.0, 1.0, 2.0]))
-    time = record.time[usable][:period]
-    motion = Motion(
-        time, smooth_x + mean, velocity, acceleration, differentiate, "weyl", periodic=True
-    )
-    scale = np.sqrt(2.0) / period
-
-    def project(columns: Array) -> Lines:
-        lines = np.fft.rfft(columns, axis=-1)[..., :count] * scale
-        lines[..., 0] /= np.sqrt(2.0)
-        return np.asarray(lines, dtype=np.complex128)
-
-    lines = project(force)
-    spread = project(each_f - force)
-    freedom = max(repeats - 1, 1)
-    per_line = np.sum(np.abs(spread) ** 2, axis=0) / (2.0 * freedom * repeats)
-    power = float(np.mean(force**2))
-    variance = np.maximum(smooth(per_line, freedom), _RELATIVE_FLOOR**2 * power)
-    x_rms, v_rms = float(np.std(x)), float(np.std(velocity))
-    noise_f = float(np.sqrt(np.sum((each_f - force) ** 2) / (freedom * period)))
-    noise_x = float(np.sqrt(np.sum((each_x - x) ** 2) / (freedom * period)))
-    window = Window(
-        omega=2.0 * np.pi * np.arange(count, dtype=np.float64) / (period * step),
-        force=lines,
-        variance=variance,
-        project=project,
-        frequency=v_rms / (2.0 * np.pi * x_rms),
-        amplitude=float(np.sqrt(2.0) * x_rms),
-        speed=float(np.sqrt(2.0) * v_rms),
-        rest=float(np.mean((each_f - force) ** 2)),
-        noise_power=noise_f**2,
-    )
-    return Observation(
-        record=record,
-        kind="periodic",
-        motion=motion,
-        windows=(window,),
-        time=record.time[usable],
-        measured=record.force[usable],
-        at_samples=lambda column: np.tile(column, repeats),
-        displacement_noise=noise_x,
-        force_noise=noise_f,
+        displacement_noise=_white_noise(x, step, cutoff),
+        force_noise=float(np.sqrt(noise.power)),
         cutoff=cutoff,
         usable=usable,
     )

@@ -14,6 +14,7 @@ from models.checks import Array
 _MOST_HARMONICS = 100
 _SLOW = 3
 _FEWEST_BINS = 14
+_FEWEST_AT_END = 3
 _BINS = 48
 _SLOPE_FROM = 8
 _STEEPEST = 2.0
@@ -64,24 +65,38 @@ def noise_spectrum(
     found = unrepeated(time, force, frequency, step)
     if found is None:
         found = _between_harmonics(time, force, frequency, step, phase)
-    edges = np.geomspace(found.frequencies[0], found.frequencies[-1] * 1.001, _BINS + 1)
+    level = smooth_spectrum(found.frequencies, found.density, found.width, 0.5 / step)
+    rising = _with_rise(level.frequencies, level.density, 0.1 * found.width)
+    return NoiseSpectrum(*rising, level.power)
+
+
+def smooth_spectrum(
+    frequencies: Array, periodogram: Array, width: float, end: float, kept: Array | None = None
+) -> NoiseSpectrum:
+    """Return the smooth level of a periodogram (B,) at rising frequencies (B,), Hz.
+
+    Its whole spectrum has bins `width` (Hz) apart and goes to `end` (Hz); what is left out of it
+    has the level of what is there. Of each bin's noise a fit has `kept` a share (B,), all without.
+    """
+    shares = np.ones(frequencies.size) if kept is None else kept
+    edges = np.geomspace(frequencies[0], frequencies[-1] * 1.001, _BINS + 1)
     middle, level, start = list[float](), list[float](), 0
-    power, below = 0.0, 0.5 * found.width
+    power, below = 0.0, 0.5 * width
     for edge in edges[1:]:
-        stop = int(np.searchsorted(found.frequencies, edge))
-        if stop - start >= _FEWEST_BINS or (edge == edges[-1] and stop - start >= 3):
-            some = found.density[start:stop]
-            middle.append(float(np.exp(np.mean(np.log(found.frequencies[start:stop])))))
-            level.append(_level(some))
+        stop = int(np.searchsorted(frequencies, edge))
+        left = float(np.sum(shares[start:stop]))
+        if left >= _FEWEST_BINS or (edge == edges[-1] and left >= _FEWEST_AT_END):
+            some = periodogram[start:stop]
+            middle.append(float(np.exp(np.mean(np.log(frequencies[start:stop])))))
+            level.append(_level(some) * some.size / left)
             power += level[-1] * (edge - below)
-            power += float(np.sum(np.maximum(some - _LINE * level[-1], 0.0))) * found.width
+            power += float(np.sum(np.maximum(some - _LINE * level[-1], 0.0))) * width
             start, below = stop, edge
     if not middle:
-        level = [float(np.mean(found.density))]
-        return NoiseSpectrum(np.array([frequency]), np.array(level), 0.5 * level[0] / step)
-    power += level[-1] * max(0.5 / step - below, 0.0)
-    at, density = _with_rise(np.array(middle), np.array(level), 0.1 * found.width)
-    return NoiseSpectrum(at, density, power)
+        mean = float(np.sum(periodogram) / np.sum(shares))
+        return NoiseSpectrum(np.array([frequencies[0]]), np.array([mean]), mean * end)
+    power += level[-1] * max(end - below, 0.0)
+    return NoiseSpectrum(np.array(middle), np.array(level), power)
 
 
 def _between_harmonics(

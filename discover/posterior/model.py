@@ -13,6 +13,9 @@ from discover.rows.columns import force_columns, moved
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import Scales
+from models.terms.between_tests import ONLY
+
+_LATEST = 8  # rows of changed models that are kept a record: a slope changes few records
 
 
 @dataclass(frozen=True)
@@ -97,6 +100,13 @@ class Composite:
                 terms.append(FittedTerm(t.id, share * t.coefficient, t.shape))
         return ForceModel(tuple(terms))
 
+    def in_test(self, test: int) -> Composite:
+        """Return the model without what is there in other tests only."""
+        kept = tuple(
+            p for p in self.terms if not test or p.fitted.shape.get(ONLY.name, 0.0) in (0.0, test)
+        )
+        return self if len(kept) == len(self.terms) else Composite(kept)
+
     @property
     def adds_up(self) -> bool:
         """True where its force is the sum of what its terms add."""
@@ -123,6 +133,7 @@ class Evaluator:
         self._rows = tuple(r.coarse if coarse else r for r in sheet.rows)
         self._forces = tuple(RecordForces(r) for r in self._rows)
         self._known: dict[tuple[object, ...], Array] = {}
+        self._latest: dict[tuple[object, ...], Array] = {}
 
     def unit(self, fitted: FittedTerm) -> Array:
         """Return the rows (U, R) of a unit of a term that adds a force."""
@@ -165,14 +176,17 @@ class Evaluator:
     def _changed(self, model: Composite) -> Array:
         """Return the rows of a model whose motion or force is changed."""
         blocks: list[Array] = []
-        known: dict[tuple[int, tuple[object, ...]], Array] = {}
         for place, unit in enumerate(self._sheet.units):
-            here = model.in_unit(place)
+            test = self._rows[unit.record].motion.test
+            here = model.in_test(test).in_unit(place)
             key = (unit.record, tuple((t.id, t.coefficient, *t.shape.items()) for t in here.terms))
-            if key not in known:
+            own = self._latest.pop(key, None)
+            if own is None:
                 with np.errstate(over="ignore", invalid="ignore"):  # a joint may shake itself apart
-                    known[key] = self._forces[unit.record].of_model(here)
-            own = known[key]
+                    own = self._forces[unit.record].of_model(here)
+                while len(self._latest) >= _LATEST * len(self._rows):
+                    self._latest.pop(next(iter(self._latest)))
+            self._latest[key] = own
             part = own[None][:, unit.part]
             blocks.append(part if unit.basis is None else part @ unit.basis)
         size = self._sheet.target.shape[1]

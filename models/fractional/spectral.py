@@ -124,4 +124,5 @@ def low_pass_gain(frequency: Array, cutoff: float) -> Array:
     array([1. , 0.5, 0. ])
     """
     s = np.clip((frequency / cutoff - 1.0) / (TRANSITION - 1.0), 0.0, 1.0)
-    return np.asarray(1.0 - s**4 * (35.0 - 84.0 * s + 70.0 * s**2 - 20.0 * s**3))
+    # Rounding leaves less than nothing just below the end.
+    return np.maximum(1.0 - s**4 * (35.0 - 84.0 * s + 70.0 * s**2 - 20.0 * s**3), 0.0)

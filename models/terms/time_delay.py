@@ -29,6 +29,8 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     step = motion.sampling or motion.step
     force = force_of(motion)
     delay = share(motion, shape) * delay_at(step, coefficient, shape)
+    if delay == 0.0:  # as of any other test with `only`
+        return force
     if shape.get("resampled", 0.0) > 0.0:
         return read_late(force, motion.time, int(shape["resampled"]))(delay)
     if shape.get("filter_order", 0.0) > 0.0 and delay > 0.0:

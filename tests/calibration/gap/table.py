@@ -3,17 +3,54 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from statistics import fmean, median
 
 from scipy.stats import binomtest
 
 from tests.calibration.gap.study import FAILED, IMPOSSIBLE, Outcome
 
-BARS = {0.2: 0.95, 0.1: 0.90, 0.05: 0.80}
-"""Of effects named first, by size."""
-STATED, AGREES, UNKNOWN, SURE, BOTH, CLOSED = 0.97, 0.95, 0.80, 0.05, 0.75, 0.90
-"""Bars of the issue; `SURE` is the most."""
+FALL = 0.03
+"""By which a rate may fall below the one before: the bars."""
+
+
+@dataclass(frozen=True)
+class Rates:
+    """The rates of a set in the run before the engine's rebuilding (commit d379887)."""
+
+    named: Mapping[float, float]
+    """Of effects named first, by size."""
+    stated: float
+    """Of effects first or among the alternatives."""
+    agrees: float
+    """Of campaigns with nothing hidden."""
+    unknown: float
+    """Of effects outside the catalogue."""
+    sure: float
+    """Of effects outside, a name stated above 0.9."""
+    both: float
+    """Of pairs, both named within three rounds."""
+    closed: float
+    """Of right answers, the held-out gap within `TIMES_NOISE` of the noise."""
+
+
+BEFORE = {
+    "first": Rates({0.2: 0.977, 0.1: 0.977, 0.05: 0.977}, 0.979, 1.0, 0.972, 0.0, 0.84, 0.944),
+    "second": Rates({0.2: 0.982, 0.1: 0.973, 0.05: 0.95}, 0.988, 1.0, 0.989, 0.0, 0.88, 0.919),
+}
+
+
+def bars(kind: str) -> Rates:
+    """Return the bars of a set; `sure` is the most. The third set has those of the second."""
+    before = BEFORE.get(kind, BEFORE["second"])
+    return Rates(
+        {size: rate - FALL for size, rate in before.named.items()},
+        before.stated - FALL, before.agrees - FALL, before.unknown - FALL, before.sure + FALL,
+        before.both - FALL, before.closed - FALL,
+    )
+
+
 MEDIAN_ALTERNATIVES, TIMES_NOISE, RELIABLE = 3, 1.3, 0.1
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0)
 
@@ -38,24 +75,24 @@ def parts(found: Sequence[Outcome]) -> dict[str, list[Outcome]]:
 
 def table(found: Sequence[Outcome], *, list_wrong: bool) -> str:
     """Return rates, reliability and, where `list_wrong`, each wrong answer."""
-    part = parts(found)
+    part, bar = parts(found), bars(found[0].case.kind)
     single, outside, clean, pairs = part.values()
     done = [*single, *outside, *clean, *pairs]
     lines = ["| asked | campaigns right | 95 % interval | bar | met |", "|---|---|---|---|---|"]
     for size in sorted({o.case.size for o in single}, reverse=True):
         some = [o for o in single if o.case.size == size]
-        lines.append(_row(f"named first, {100 * size:g} %", some, _right, BARS.get(size)))
+        lines.append(_row(f"named first, {100 * size:g} %", some, _right, bar.named.get(size)))
     right = [o for o in single if o.right and o.expected != ("agrees",)]
     lines += [
-        _row("among the stated, all sizes", single, lambda o: o.stated, STATED),
-        _row("nothing hidden: agrees", clean, _right, AGREES),
-        _row("outside: unknown, or only like what is named", outside, _right, UNKNOWN),
+        _row("among the stated, all sizes", single, lambda o: o.stated, bar.stated),
+        _row("nothing hidden: agrees", clean, _right, bar.agrees),
+        _row("outside: unknown, or only like what is named", outside, _right, bar.unknown),
         _row("outside: unknown first", outside, _unknown, None),
-        _row("outside: a name above 0.9", outside, _sure, SURE, most=True),
-        _row("pairs: both within three rounds", pairs, lambda o: o.both, BOTH),
+        _row("outside: a name above 0.9", outside, _sure, bar.sure, most=True),
+        _row("pairs: both within three rounds", pairs, lambda o: o.both, bar.both),
         _row(
             "held-out gap ≤ 1.3 × noise, where right", right,
-            lambda o: o.ratio <= TIMES_NOISE, CLOSED,
+            lambda o: o.ratio <= TIMES_NOISE, bar.closed,
         ),
     ]
     if single:
@@ -150,7 +187,7 @@ def _row(
         return f"| {text} | {_share(right, len(some))} | {ends} | | |"
     met = "yes" if (rate <= bar if most else rate >= bar) else "no"
     sign = "≤" if most else "≥"
-    return f"| {text} | {_share(right, len(some))} | {ends} | {sign} {100 * bar:g} % | {met} |"
+    return f"| {text} | {_share(right, len(some))} | {ends} | {sign} {100 * bar:.1f} % | {met} |"
 
 
 def _share(right: int, asked: int) -> str:

@@ -11,7 +11,9 @@ from tests.calibration.structures.friction import LAWS, SMOOTH
 from tests.calibration.structures.outside import OUTSIDE
 from tests.calibration.structures.plans import TWISTS
 
-SETS = ("structures", "two-boundaries", "one-extra", "outside", "thin")
+SEEDS = {"structures": 5, "two-boundaries": 8, "one-extra": 5, "outside": 5, "thin": 6}
+"""Number of seeds of each set's kept table."""
+SETS = tuple(SEEDS)
 _BEHIND = ("series-compliance", "backlash")
 _SINES = ("plain", "harmonics", "short")
 

@@ -126,3 +126,12 @@ def test_band_limited_sine(order):
     exact = OMEGA**order * np.sin(OMEGA * t + order * np.pi / 2)
     assert oracles.relative_rms(found[1000:-1000], exact[1000:-1000]) < 5e-3
     assert oracles.relative_rms(found, exact) < 3e-2
+
+
+@pytest.mark.parametrize("cutoff", [1.07, 1.14, 1.77, 1.78, 2.28, 5.65, 10.87])
+def test_a_line_just_below_the_end_of_the_low_pass_is_no_error(cutoff):
+    # There the gain is nothing but rounding, of either sign.
+    t = 1e-3 * np.arange(8000)
+    found = band_limited_derivative(np.sin(3.0 * t), [1.0], 1e-3, cutoff=cutoff)[0]
+    inner = slice(2000, -2000)
+    assert oracles.relative_rms(found[inner], 3.0 * np.cos(3.0 * t)[inner]) < 5e-3

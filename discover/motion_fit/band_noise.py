@@ -1,0 +1,167 @@
+"""The force's noise in a record that does not repeat: what no law of the motion explains.
+
+A model of any structure makes the force from the motion. So a wide set of functions of the motion,
+far more than a model has, is fitted to the force's spectrum, and what it leaves is the noise: the
+sensor's own, and what of the device does not follow the motion (ripple of gears, valves that
+flutter). The functions are chosen one by one as long as each explains more than chance would, and
+what their number takes from the noise is given back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from discover.motion_fit.noise_spectrum import NoiseSpectrum, smooth_spectrum
+from discover.motion_fit.observation import Lines
+from models.checks import Array
+from models.motion import Motion
+from models.terms.hysteresis import bristle_state
+
+_PASSES = 3  # of fitting with the noise that the last pass found
+_PRODUCTS = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
+"""Powers of displacement and velocity whose products stand for a static law."""
+_ORDERS = (0.25, 0.5, 0.75, 1.25, 1.5, 1.75)
+"""Of derivatives of displacement: any smooth linear response is nearly a sum of them."""
+_SCALES = np.geomspace(3e-3, 1.0, 6)
+"""Of the root mean square speed and displacement, over which friction may reverse."""
+_SLOW = 3  # polynomials of time that follow a drift
+_FEWEST_LINES = 12
+_HALF_OCTAVE = float(np.sqrt(2.0))
+
+
+@dataclass(frozen=True)
+class BandNoise:
+    """What a wide set of functions of the motion leaves of the force."""
+
+    spectrum: NoiseSpectrum
+    """The noise."""
+    follows: float
+    """Hz up to which the force follows the motion; 0 where it nowhere does."""
+
+
+def band_noise(
+    motion: Motion, force: Array, step: float, cutoff: float, inner: slice
+) -> BandNoise:
+    """Return the force's noise, and up to which frequency the force follows the motion.
+
+    A law holds at every frequency. So the force follows as far as what is found below explains
+    half of it or more in the next half of an octave: beyond, the motion is mostly noise itself.
+
+    Parameters
+    ----------
+    motion : Motion
+        Of N samples, band-limited.
+    force : ndarray, shape (N,)
+        N.
+    step : float
+        Sampling interval, s.
+    cutoff : float
+        Hz, end of the band in which the motion is known. Above it the force's own spectrum counts
+        where the motion explains none of it.
+    inner : slice
+        Samples that count: derivatives at a record's ends rest on what is not there.
+    """
+    force = force[inner]
+    taper = np.hanning(force.size + 2)[1:-1]
+    scale = np.sqrt(2.0 * step / np.sum(taper**2))
+    columns = _functions_of(motion)[:, inner]
+    columns = (columns - columns.mean(axis=1, keepdims=True)) * (taper * scale)
+    lines = np.fft.rfft(columns, axis=1)[:, 1:]
+    target = np.fft.rfft((force - force.mean()) * taper * scale)[1:]
+    frequencies = np.asarray(np.fft.rfftfreq(force.size, step))[1:]
+    width = float(frequencies[0])
+    count = max(int(np.floor(cutoff / width)), min(_FEWEST_LINES, frequencies.size))
+    coefficients, left, kept = _explained(lines[:, :count], target[:count], frequencies[:count])
+    beyond = np.abs(target[count:] - coefficients @ lines[:, count:]) ** 2
+    left = np.concatenate([left, np.minimum(beyond, np.abs(target[count:]) ** 2)])
+    kept = np.concatenate([kept, np.ones(beyond.size)])
+    noise = smooth_spectrum(frequencies, left, width, 0.5 / step, kept)
+    return BandNoise(noise, _follows(lines[:, :count], target[:count], frequencies[:count]))
+
+
+def _explained(lines: Lines, target: Lines, frequencies: Array) -> tuple[Array, Array, Array]:
+    """Return coefficients (K,), what they leave of each line's power, and the share it kept."""
+    width, end = float(frequencies[0]), float(frequencies[-1])
+    left = np.abs(target) ** 2
+    level = smooth_spectrum(frequencies, left, width, end)
+    for _ in range(_PASSES):
+        weight = 1.0 / np.sqrt(level.at(frequencies))
+        coefficients, kept = _selected(lines * weight, target * weight)
+        left = np.abs(target - coefficients @ lines) ** 2
+        level = smooth_spectrum(frequencies, left, width, end, kept)
+    return coefficients, left, kept
+
+
+def _follows(lines: Lines, target: Lines, frequencies: Array) -> float:
+    """Return the frequency up to which the force follows the motion, Hz."""
+    end = frequencies.size
+    while True:
+        below = int(end / _HALF_OCTAVE)
+        if below < _FEWEST_LINES:
+            return float(frequencies[end - 1])
+        coefficients, _, _ = _explained(lines[:, :below], target[:below], frequencies[:below])
+        left = target[below:end] - coefficients @ lines[:, below:end]
+        if np.sum(np.abs(left) ** 2) < 0.5 * np.sum(np.abs(target[below:end]) ** 2):
+            return float(frequencies[end - 1])
+        end = below
+
+
+def _functions_of(motion: Motion) -> Array:
+    """Return functions of the motion (K, N) that stand for whatever law a device may follow."""
+    x = motion.displacement - motion.displacement.mean()
+    v, a = motion.velocity, motion.acceleration
+    place, speed, push = (_unit(c) for c in (x, v, a))
+    products = [place**i * speed**j for i, j in _PRODUCTS]
+    sided = [np.abs(place), np.abs(speed), place * np.abs(place), speed * np.abs(speed)]
+    friction = []
+    for share in _SCALES:
+        sign = np.tanh(speed / share)
+        friction += [sign, sign * place, bristle_state(motion, share * float(np.std(x)))]
+    friction.append(np.tanh(speed / _SCALES[0]) * np.abs(push))
+    linear = [_unit(c) for c in motion.differentiate(np.array(_ORDERS))]
+    late = np.linspace(-1.0, 1.0, x.size)
+    drift = list(np.polynomial.legendre.legvander(late, _SLOW).T[1:])
+    jerk = _unit(np.gradient(a))
+    return np.stack([*products, *sided, *friction, push, jerk, *linear, *drift])
+
+
+def _unit(column: Array) -> Array:
+    size = float(np.sqrt(np.mean(column**2)))
+    return np.asarray(column / size if size > 0.0 else column)
+
+
+def _selected(lines: Lines, target: Lines) -> tuple[Array, Array]:
+    """Return coefficients (K,) of the functions that matter, and what they leave of each line.
+
+    Orthogonal least squares: the next is the one that explains most of what is left, until it is
+    less than the logarithm of the number of rows, as in the Bayesian information criterion. No
+    more than a quarter of the rows are spent.
+    """
+    rows = np.concatenate([lines.real, lines.imag], axis=1)
+    goal = np.concatenate([target.real, target.imag])
+    size = np.linalg.norm(rows, axis=1)
+    rows = rows / np.where(size > 0.0, size, 1.0)[:, None]
+    count = goal.size
+    remaining, left = rows.copy(), goal.copy()
+    chosen, basis = list[int](), list[Array]()
+    while len(chosen) < min(count // 4, rows.shape[0]):
+        norms = np.sum(remaining**2, axis=1)
+        gains = np.where(norms > 1e-8, (remaining @ left) ** 2 / np.maximum(norms, 1e-8), 0.0)
+        best = int(np.argmax(gains))
+        spread = float(left @ left - gains[best]) / max(count - len(chosen) - 1, 1)
+        if gains[best] <= np.log(count) * spread:
+            break
+        direction = remaining[best] / np.sqrt(norms[best])
+        chosen.append(best)
+        basis.append(direction)
+        left = left - (direction @ left) * direction
+        remaining -= np.outer(remaining @ direction, direction)
+    coefficients = np.zeros(rows.shape[0])
+    if not chosen:
+        return coefficients, np.ones(lines.shape[1])
+    solved = np.linalg.lstsq(rows[chosen].T, goal, rcond=1e-10)[0]
+    coefficients[chosen] = solved / size[chosen]
+    spent = np.sum(np.stack(basis) ** 2, axis=0).reshape(2, -1).mean(axis=0)
+    return coefficients, 1.0 - spent
