@@ -32,4 +32,6 @@ def shipped_campaign(name: str = CLEAR) -> Path:
     for folder in (package / "_data" / name, package.parent / "data" / name):
         if (folder / "campaign.toml").is_file():
             return folder
-    raise InputError(f"the shipped campaign {name}", expected="installed with the package", found="none")
+    raise InputError(
+        f"the shipped campaign {name}", expected="installed with the package", found="none"
+    )

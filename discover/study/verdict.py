@@ -24,6 +24,9 @@ from models.cores import FRICTION, OTHER
 SURE = 0.8
 """Probability under which a structure is not stated: whoever acts on it is wrong once in five."""
 
+MOST_LEFT = 0.5
+"""Of the noise: where no term explains more than that, a structure is the best so far."""
+
 
 def headline(document: Mapping[str, Any]) -> str:
     """Return the answer in one sentence: a structure a band, the boundary, the Dean verdict.
@@ -41,7 +44,7 @@ def headline(document: Mapping[str, Any]) -> str:
     if len(bands) == 1:
         count = len(bands[0]["records"])
         where = "the one record" if count == 1 else f"all {counted(count, 'record')}"
-        return f"{names[0]}{besides} in {where}{_dean_short(document)}"
+        return f"{names[0]}{besides} in {where}{_dean_short(document)}{_so_far(document)}"
     coordinate = str(document["coordinate"])
     parts = [f"{n} {band_range(b, coordinate)}" for n, b in zip(names, bands, strict=True)]
     number = _NUMBERS.get(len(bands), str(len(bands)))
@@ -49,7 +52,7 @@ def headline(document: Mapping[str, Any]) -> str:
     where = f"{number} bands of {coordinate_name(document)}: {listed(parts)}"
     unit = {"speed": " m/s", "frequency": " Hz"}.get(coordinate, "")
     known = f" (boundary {listed(ends)}{unit})" if ends else ""
-    return f"{where}{besides}{known}{_dean_short(document)}"
+    return f"{where}{besides}{known}{_dean_short(document)}{_so_far(document)}"
 
 
 def verdict_lines(document: Mapping[str, Any]) -> tuple[str, ...]:
@@ -121,6 +124,16 @@ def _dean_short(document: Mapping[str, Any]) -> str:
     return f"; Dean criterion {significant(check['criterion'], 3)}: the boundary {said}"
 
 
+def _so_far(document: Mapping[str, Any]) -> str:
+    """Return that something else is in the force, where no term explains much of it."""
+    lefts = [
+        b["remainder_percent"]["value"] for b in document["bands"]
+        if b.get("remainder_percent") and b.get("noise_percent") is not None
+        and b["remainder_percent"]["interval"][0] > MOST_LEFT * b["noise_percent"]
+    ]
+    return f"; the best so far, {percent(max(lefts))} of the force is unexplained" if lefts else ""
+
+
 def extras(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Return what the device has beside its structures, each once with its numbers."""
     seen: list[Mapping[str, Any]] = []
@@ -145,7 +158,7 @@ def _extra(extra: Mapping[str, Any]) -> str:
     unit = "" if extra["unit"] == "1" else f" {extra['unit']}"
     text = f"{short_name(str(extra['id']))} {significant(extra['coefficient'], 3)}"
     text += f" ({interval(extra['interval'])}){unit}"
-    told = shape(extra)
+    told = shape({key: value for key, value in extra.items() if not key.endswith("_interval")})
     if told:
         text += f", {told}"
     text += f", {probability(extra['probability'])}"

@@ -169,6 +169,12 @@ def test_headline_is_one_sentence_with_structures_boundary_and_dean_verdict():
     )
 
 
+def test_headline_says_that_something_else_is_in_the_force_where_much_is_left():
+    document = sample_document()
+    document["bands"][1]["remainder_percent"] = {"value": 7.04, "interval": [6.0, 8.0]}
+    assert headline(document).endswith("; the best so far, 7.04\u202f% of the force is unexplained")
+
+
 def test_headline_does_not_state_a_structure_that_may_well_be_another():
     document = sample_document()
     document["bands"][0]["probability"] = 0.79
