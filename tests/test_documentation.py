@@ -56,6 +56,18 @@ def test_the_readme_shows_what_the_program_prints(capsys, tmp_path, monkeypatch)
     assert said(capsys.readouterr().out) == said(gap)
 
 
+@pytest.mark.slow
+def test_the_readme_s_lines_of_python_run(tmp_path, monkeypatch):
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my-records").symlink_to(ROOT / "data" / "segmented")
+    names = {}
+    exec(block, names)
+    assert names["gap"].verdict == "agrees"
+    assert (tmp_path / "study.json").is_file()
+
+
 def test_the_command_in_a_campaign_s_first_line_makes_it_again(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "data").mkdir()

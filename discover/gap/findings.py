@@ -59,7 +59,7 @@ def findings_of(
             Finding(
                 "note",
                 f"Refitting the model's own coefficients alone brings the gap from {gaps[0]:.3g} %"
-                f" to {gaps[1]:.3g} %; the rounds start from there. --fixed holds them.",
+                f" to {gaps[1]:.3g} %; the rounds start from there. `--fixed` holds them.",
             )
         )
     result += _wrong_signs(baseline, found.refitted)

@@ -50,8 +50,7 @@ def verdict_lines(document: Mapping[str, Any]) -> list[str]:
     held_out = document.get("final_held_out_gap_percent")
     left = f"; {percent(held_out)} on records that were not fitted" if held_out is not None else ""
     lines.append(f"Gap: {_gaps(document)}{left}; noise {percent(document['noise_percent'])}.")
-    left_over = _left_over(document)
-    return [*lines, left_over] if left_over else lines
+    return [*lines, *_left_over(document)]
 
 
 def _said(document: Mapping[str, Any], verdict: str) -> str:
@@ -130,14 +129,13 @@ def _alike(entry: Mapping[str, Any]) -> str:
     return f" pooled, {percent(before)} to {percent(after)} with every record counting alike"
 
 
-def _left_over(document: Mapping[str, Any]) -> str:
-    """Return what no term explains, how much and of what shape; "" where neither is told."""
-    parts = []
+def _left_over(document: Mapping[str, Any]) -> list[str]:
+    """Return what no term explains: how much, and of what shape where that is told."""
+    lines = []
     remainder = document.get("remainder_percent")
     if remainder:
-        parts.append(
-            f"of the force, beyond noise, {remainder_text(remainder)}; every record counts alike"
-        )
+        left = remainder_text(remainder)
+        lines.append(f"Left over: of the force, beyond noise, {left}; every record counts alike.")
     if document.get("shape"):
-        parts.append(str(document["shape"]))
-    return f"Left over: {'; '.join(parts)}." if parts else ""
+        lines.append(f"Its shape: {document['shape']}.")
+    return lines

@@ -67,7 +67,7 @@ def test_nothing_named_still_reports(verdict):
         document["shape"] = "odd in velocity, growing with the square of speed"
     page = page_of(document, GapFigureData(records=sample_gap_data().records))
     assert verdict.capitalize() in page.text
-    assert ("odd in velocity" in page.text) == (verdict == "unexplained")
+    assert ("Odd in velocity" in page.text) == (verdict == "unexplained")
     assert "Round 1" not in page.text
 
 
