@@ -18,7 +18,8 @@ from discover.bands.search import Banded, BandSearch, searched
 from discover.bands.variants import Grids, variants_of
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.climb import Place
-from discover.posterior.grow import Step, grown
+from discover.posterior.grow import Candidate, Step, grown
+from discover.posterior.left_out import predicts_better
 from discover.posterior.model import Evaluator
 from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
@@ -199,8 +200,8 @@ def _with_one_more(device: Device, way: Found) -> Found | Step:
     there = {j.id for j in way.joined}
     open_ids: Collection[str] = [i for i in device.extras if i not in there]
     step = grown(assessor, now, open_ids)
-    best = step.best
-    if not best.id or best.assessed is None:
+    best = _that_predicts(assessor, now, step)
+    if best is None or best.assessed is None:
         return step
     terms = best.assessed.model.terms[-best.count :]
     new = Joined(
@@ -212,3 +213,13 @@ def _with_one_more(device: Device, way: Found) -> Found | Step:
         for j in way.joined
     ]
     return _searched(device, (*old, new), best.assessed.place, best.assessed)
+
+
+def _that_predicts(assessor: Assessor, now: Assessed, step: Step) -> Candidate | None:
+    """Return the most probable term that predicts records left out better; None without one."""
+    for candidate in step.candidates:
+        if not candidate.id or candidate.assessed is None:
+            return None
+        if predicts_better(assessor, now, candidate.assessed):
+            return candidate
+    return None

@@ -192,12 +192,12 @@ class BandSearch:
         total = float(logsumexp([v for v, _, _ in alone.values()])) - best_alone
         total += float(last.value[0]) if shares[best].shape[0] > 1 else best_alone
         total += others + prior
-        variants = last.best[0]
+        variants = [self._of_best_core(own) for own in last.by_variant[0]]
         return Banded(
             coordinate=names if isinstance(names, str) else names[best],
             shares=shares[best],
             brackets=ends[best],
-            variants=tuple(int(v) for v in variants),
+            variants=tuple(variants),
             by_variant=last.by_variant[0],
             value=total,
             place=place,
@@ -205,6 +205,13 @@ class BandSearch:
             quiet=is_quiet({p: v for p, (v, _, _) in alone.items()}),
             at_place=float(last.value[0]),
         )
+
+    def _of_best_core(self, by_variant: Array) -> int:
+        """Return the best variant of the most probable core."""
+        cores = np.array([v.core for v in self.variants])
+        total = {core: logsumexp(by_variant[cores == core]) for core in dict.fromkeys(cores)}
+        best = max(total, key=lambda core: total[core])
+        return int(np.argmax(np.where(cores == best, by_variant, -np.inf)))
 
     def _seen(
         self, shares: Array, start: Indices, known: dict[Place, tuple[float, int, Divided]],

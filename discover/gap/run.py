@@ -94,7 +94,7 @@ def close_gap(
 def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) -> Gap:
     start, final = found.given, found.final
     noise = noise_percent(final.seen)
-    spread = spread_of(baseline.assessor, final.assessed)
+    spread = spread_of(baseline.assessor, final.assessed, final.predicting)
     located = places(baseline.rows, start.models)
     left = places(baseline.rows, final.models)
     verdict = _verdict(found, noise)
@@ -196,8 +196,8 @@ def _alternatives(step: Step, effect: str, at: Stage) -> tuple[tuple[str, float]
 
 def _named(baseline: Baseline, entry: Round, number: int, found: Search) -> NamedEffect:
     before, after = entry.before, entry.after
-    spread = spread_of(baseline.assessor, after.assessed)
-    model = after.assessed.model
+    spread = spread_of(baseline.assessor, after.assessed, after.predicting)
+    model = after.predicting.model
     place = next(
         i for i in reversed(range(len(model.terms))) if model.terms[i].fitted.id == entry.effect
     )
@@ -253,7 +253,7 @@ def _mended_terms(baseline: Baseline, at: Stage, spread: Spread) -> tuple[Mended
         *held,
         *(
             MendedTerm(p.fitted, _interval(spread, i, p.fitted))
-            for i, p in enumerate(at.assessed.model.terms)
+            for i, p in enumerate(at.predicting.model.terms)
             if not p.held
         ),
     )

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from discover.gap.baseline import Baseline
 from discover.posterior.assess import Assessed
 from discover.posterior.grow import Candidate, Step, grown
-from discover.posterior.left_out import left_out_growth
+from discover.posterior.left_out import left_out
 from discover.posterior.reversal import reversal_of
 from discover.rows import Accuracy, accuracy, pooled_percent
 from models.constitutive import FittedTerm, ForceModel
 
 MOST_ROUNDS = 6
-_WORSE = 1.02  # times the error of what was not fitted, that an effect may lead to
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,8 @@ class Stage:
 
     assessed: Assessed
     """Fitted; friction by the whole of its curve."""
+    predicting: Assessed
+    """The same at the numbers that predict best."""
     models: tuple[ForceModel, ...]
     """The model in each record; friction by few curves."""
     accuracies: tuple[Accuracy, ...]
@@ -48,7 +51,7 @@ class Stage:
     @property
     def terms(self) -> tuple[FittedTerm, ...]:
         """All terms that are not held."""
-        return tuple(p.fitted for p in self.assessed.model.terms if not p.held)
+        return tuple(p.fitted for p in self.predicting.model.terms if not p.held)
 
 
 @dataclass(frozen=True)
@@ -90,24 +93,25 @@ class Search:
 
 def stage(baseline: Baseline, assessed: Assessed) -> Stage:
     """Return what an assessed model makes of every record."""
-    own = tuple(p.fitted for p in assessed.model.terms if not p.held)
-    models = baseline.with_terms(_few_curves(baseline, assessed, own))
+    best = assessed if baseline.fixed else baseline.assessor.predicting(assessed)
+    own = tuple(p.fitted for p in best.model.terms if not p.held)
+    models = baseline.with_terms(_few_curves(baseline, assessed, best, own))
     accuracies = tuple(
         accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
     )
     held = tuple(a for a in accuracies if a.observation.held_out)
     return Stage(
-        assessed, tuple(models), accuracies, held or _left_out(baseline, assessed, accuracies)
+        assessed, best, tuple(models), accuracies, held or _left_out(baseline, best, accuracies)
     )
 
 
 def _few_curves(
-    baseline: Baseline, assessed: Assessed, terms: Sequence[FittedTerm]
+    baseline: Baseline, assessed: Assessed, best: Assessed, terms: Sequence[FittedTerm]
 ) -> tuple[FittedTerm, ...]:
     """Return a model's terms, friction by the few curves that make the one that was found."""
     if baseline.fixed:
         return tuple(terms)
-    found = reversal_of(baseline.assessor, assessed)
+    found = reversal_of(baseline.assessor, assessed, best)
     if found is None:
         return tuple(terms)
     name = found.terms[0].id
@@ -121,7 +125,8 @@ def _left_out(
     """Return each record's accuracy by the model fitted to the others."""
     if len(accuracies) < 2:
         return ()
-    growth = left_out_growth(baseline.assessor, assessed)
+    fitted, predicted = left_out(baseline.assessor, assessed)
+    growth = np.maximum(predicted - fitted, 0.0)
     return tuple(
         replace(a, error_power=a.error_power + float(g) * a.force_power)
         for a, g in zip(accuracies, growth, strict=True)
@@ -182,20 +187,20 @@ def _given(baseline: Baseline) -> Stage:
         accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
     )
     held = tuple(a for a in accuracies if a.observation.held_out)
-    return Stage(assessed, tuple(models), accuracies, held or accuracies)
+    return Stage(assessed, assessed, tuple(models), accuracies, held or accuracies)
 
 
 def _accepted(
     baseline: Baseline, here: Stage, step: Step
 ) -> tuple[Candidate | None, str | None]:
-    """Return the most probable candidate that predicts what is not fitted no worse."""
+    """Return the most probable candidate that predicts what is not fitted better."""
     rejected = None
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
             return None, rejected
         after = stage(baseline, candidate.assessed)
         was, now = here.unseen_gap, after.unseen_gap
-        if was is None or now is None or now <= _WORSE * was:
+        if was is None or now is None or now < was:
             return candidate, rejected
         rejected = rejected or candidate.id
     return None, rejected

@@ -204,14 +204,21 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
                 share=float(np.sum(taper**2)) / mass,
             )
         )
+    fade = max(int(np.ceil(1.0 / (cutoff * step))), 1)  # over which the lines' windows open
+    shown = slice(inner.start + fade, inner.stop - fade)
+
+    def at_samples(column: Array) -> Array:
+        whole = np.asarray(low_pass(column[inner], step, cutoff=cutoff))
+        return whole[fade : whole.size - fade]
+
     return Observation(
         record=record,
         kind=kind,
         motion=motion,
         windows=tuple(windows),
-        time=time[inner],
-        measured=np.asarray(low_pass(force, step, cutoff=cutoff))[inner],
-        at_samples=lambda column: np.asarray(low_pass(column, step, cutoff=cutoff))[inner],
+        time=time[shown],
+        measured=at_samples(force),
+        at_samples=at_samples,
         displacement_noise=_white_noise(x, step, cutoff),
         force_noise=float(np.sqrt(noise.power)),
         cutoff=cutoff,

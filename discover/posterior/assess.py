@@ -95,6 +95,29 @@ class Assessor:
             local, place, float(logsumexp(list(visited.values()))), best, visited, is_quiet(visited)
         )
 
+    def predicting(self, assessed: Assessed) -> Assessed:
+        """Return a model at the numbers that predict best, where nothing is left to a remainder.
+
+        What no term explains is not known in other records. Numbers that lean on a remainder are
+        right only beside it; these are the ones by which the terms alone come closest.
+        """
+        if assessed.place.remainder <= _SMALL or not assessed.local.numbers:
+            return assessed
+        local, curve = assessed.local, self.curve_of(assessed.model)
+        visited: dict[Place, float] = {}
+        place = assessed.place
+        for _ in range(_ROUNDS):
+            visited = {}
+            for flat in assessed.place.unaided:
+                self._at(local, visited, flat)
+            before, place = place, max(visited, key=lambda p: visited[p])
+            if place == before:
+                break
+            sizes = place.sizes(self.space.own_unit)
+            local = fitted(self.space, self.evaluator, local.model, sizes, curve)
+        best = judged(self.space, local, place.sizes(self.space.own_unit), curve)
+        return Assessed(local, place, assessed.value, best, visited, assessed.quiet)
+
     def _at(self, local: Local, visited: dict[Place, float], place: Place) -> float:
         if place not in visited:
             sizes = place.sizes(self.space.own_unit)

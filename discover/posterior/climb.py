@@ -28,6 +28,9 @@ class Place:
     powers: tuple[int, ...]
     """Powers of `STEP` of the remainder, of own friction, and of each kind of independent error:
     over the force (friction: over what would make the whole of it)."""
+    flat: int | None = None
+    """Power of an independent error that is the same in all rows; None without. It stands for
+    whatever terms leave where they alone shall predict."""
 
     @property
     def remainder(self) -> int:
@@ -49,10 +52,17 @@ class Place:
         """Return the place of a model that explains all but noise."""
         return cls((_LEAST,) * (2 + kinds))
 
+    @property
+    def unaided(self) -> list[Place]:
+        """Places with nothing beside the terms but an error that is the same in all rows."""
+        powers = (_LEAST,) * len(self.powers)
+        return [Place(powers, flat) for flat in range(_LEAST, _MOST + 1)]
+
     def sizes(self, friction: float) -> Sizes:
         """Return the sizes, with that of own friction that would make the whole force, N."""
         remainder, own, *loud = (STEP**p for p in self.powers)
-        return Sizes(remainder, tuple(loud), friction * own)
+        flat = 0.0 if self.flat is None else STEP**self.flat
+        return Sizes(remainder, (*loud, flat), friction * own)
 
     def moved(self, move: tuple[int, ...], stride: int = 1) -> Place:
         """Return a place that many powers away, kept within the grid."""

@@ -10,6 +10,7 @@ from scipy.special import log_ndtr
 from models.checks import Array
 
 _LOG_2 = float(np.log(2.0))
+_LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ def solved(gram: Array, side: Array, spread: Array, sign: Array, log_normal: flo
         Standard deviation of each coefficient beforehand.
     sign : ndarray, shape (..., K)
         1 where a coefficient can't be negative, -1 where not positive, else 0: the prior is
-        a normal one cut off at zero. Its evidence takes each such coefficient by itself.
+        a normal one cut off at zero.
     log_normal : float
         Log density of the measured force without any column.
     """
@@ -51,9 +52,36 @@ def solved(gram: Array, side: Array, spread: Array, sign: Array, log_normal: flo
     covariance = np.swapaxes(root, -1, -2) @ root
     value = log_normal + 0.5 * np.sum(half**2, axis=-1)
     value = value - np.sum(np.log(np.diagonal(factor, axis1=-2, axis2=-1)), axis=-1)
-    deviation = np.sqrt(np.maximum(np.diagonal(covariance, axis1=-2, axis2=-1), 1e-300))
-    side_of_zero = np.where(sign == 0.0, 0.0, _LOG_2 + log_ndtr(sign * mean / deviation))
-    return Solved(value + np.sum(side_of_zero, axis=-1), mean, covariance)
+    return Solved(value + _allowed(mean, covariance, sign), mean, covariance)
+
+
+def _allowed(mean: Array, covariance: Array, sign: Array) -> Array:
+    """Return the log of how much of a posterior (...,) its signs allow, over that of the prior.
+
+    One coefficient after the other is cut off at zero, and the others are what they are beside
+    it (Mendell and Elston, Biometrics 30, 1974): columns that are alike can't make up for each
+    other with a sign that neither may have.
+    """
+    if not np.any(sign):
+        return np.zeros(mean.shape[:-1])
+    mean, covariance = mean.copy(), covariance.copy()
+    result = np.zeros(mean.shape[:-1])
+    for k in range(mean.shape[-1]):
+        own = sign[..., k]
+        variance = np.maximum(covariance[..., k, k], 1e-300)
+        deviation = np.sqrt(variance)
+        z = own * mean[..., k] / deviation
+        inside = log_ndtr(z)
+        ratio = np.exp(-0.5 * z**2 - _LOG_ROOT_2PI - inside)
+        moved = np.where(own == 0.0, 0.0, ratio)
+        result = result + np.where(own == 0.0, 0.0, _LOG_2 + inside)
+        slope = covariance[..., :, k] / deviation[..., None]
+        mean = mean + slope * (own * moved)[..., None]
+        taken = np.clip(moved * (moved + z), 0.0, 1.0)
+        covariance = covariance - (
+            taken[..., None, None] * slope[..., :, None] * slope[..., None, :]
+        )
+    return result
 
 
 def without(gram: Array, taken: Array, spread: Array) -> tuple[Array, float]:

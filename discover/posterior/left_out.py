@@ -5,24 +5,28 @@ from __future__ import annotations
 import numpy as np
 
 from discover.posterior.assess import Assessed, Assessor
-from models.checks import Array
+from models.checks import Array, Indices
+
+_FEWEST = 2  # records, or parts of one, for one to be left out
 
 
-def left_out_growth(assessor: Assessor, assessed: Assessed) -> Array:
-    """Return by how much more a model leaves of each record where the others alone are fitted.
+def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
+    """Return what a model leaves of each record: fitted to all, and to the others alone.
+
+    Of one record alone, parts that move alike are left out in turn.
 
     Parameters
     ----------
     assessor : Assessor
         Of the records.
     assessed : Assessed
-        The model.
+        The model, at the numbers that predict best.
 
     Returns
     -------
-    ndarray, shape (records,)
-        Mean square over that of the record's force, less the same where all are fitted; not below
-        0. The remainder that records share is not used to predict.
+    fitted, predicted : ndarray, shape (records,)
+        Mean square of what is left over that of the record's force. The remainder that records
+        share is not used to predict.
     """
     space, local = assessor.space, assessed.local
     curve = assessor.curve_of(local.model)
@@ -34,21 +38,31 @@ def left_out_growth(assessor: Assessor, assessed: Assessed) -> Array:
     gram = here.within(columns)
     prior = np.diag(np.concatenate([local.spread, wide]) ** -2.0)
     records = np.array([u.record for u in space.sheet.units])
+    parts = records if records.max() > 0 else np.arange(records.size)
     total = gram.sum(axis=0)
-    found = np.zeros(len(space.sheet.rows))
-    for record in range(found.size):
-        inside = records == record
+    found = np.zeros((2, len(space.sheet.rows)))
+    for part in range(parts.max() + 1):
+        inside = parts == part
         own = total - gram[inside].sum(axis=0)
-        squares = []
-        for some in (total, own):
+        record = records[inside][0]
+        for place, some in enumerate((total, own)):
             values = np.linalg.solve(some[:-1, :-1] + prior, some[:-1, -1])
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
-            squares.append(_relative(assessor, np.flatnonzero(inside), left))
-        found[record] = max(squares[1] - squares[0], 0.0)
-    return found
+            found[place, record] += _relative(assessor, np.flatnonzero(inside), left)
+    return found[0], found[1]
 
 
-def _relative(assessor: Assessor, units: Array, left: Array) -> float:
+def predicts_better(assessor: Assessor, was: Assessed, now: Assessed) -> bool:
+    """Tell whether a model predicts records that are left out better than another one."""
+    if len(assessor.space.sheet.units) < _FEWEST:
+        return True
+    before, after = (
+        float(np.mean(left_out(assessor, assessor.predicting(a))[1])) for a in (was, now)
+    )
+    return after < before
+
+
+def _relative(assessor: Assessor, units: Indices, left: Array) -> float:
     """Return the mean square of what is left in units, over that of their force."""
     sheet = assessor.space.sheet
     total = 0.0

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import lsq_linear
 from scipy.special import logsumexp
 
 from discover.posterior.covariance import Sizes
@@ -62,6 +63,10 @@ class Judged:
     """Of the curve, where most of the evidence is."""
     solved: Solved
     """At that scale."""
+    gram: Array
+    """(P, P) products of the slopes under the inverse covariance, likewise."""
+    side: Array
+    """(P,) likewise, with what the slopes shall make."""
 
 
 def local_of(
@@ -106,7 +111,7 @@ def judged(space: Space, local: Local, sizes: Sizes, curve: Part | None) -> Judg
         normal = at.log_normal - 0.5 * float(at.gram[-1, -1])
         one = solved(at.gram[:-1, :-1], at.gram[:-1, -1], local.spread, local.sign, normal)
         values.append(float(one.log_evidence))
-        found.append((at.scale, one))
+        found.append((at.scale, one, at.gram[:-1, :-1], at.gram[:-1, -1]))
     best = int(np.argmax(values))
     value = float(logsumexp(values)) - float(np.log(len(values)))
     return Judged(value, *found[best])
@@ -133,7 +138,7 @@ def fitted(
     best = _density(space, here, sizes, curve)
     for _ in range(iterations):
         answer = judged(space, here, sizes, curve)
-        wanted = answer.solved.mean
+        wanted = _within_bounds(here, answer, space.scales)
         share, there, value = 1.0, here, best
         for _ in range(_HALVINGS):
             values = _bounded(here, wanted, share, space.scales)
@@ -151,21 +156,46 @@ def fitted(
     return here
 
 
+def _within_bounds(local: Local, answer: Judged, scales: Scales) -> Array:
+    """Return the most probable values (P,) within bounds, and no stride too long.
+
+    Numbers are bounded together: where one stays at its bound, the others make up for it.
+    """
+    low, high = np.array([_range(local, n, scales) for n in local.numbers]).T
+    spread = local.spread
+    inner = np.eye(spread.size) + spread[:, None] * answer.gram * spread
+    factor = np.linalg.cholesky(inner)
+    goal = np.linalg.solve(factor, spread * answer.side)
+    found = lsq_linear(factor.T, goal, (low / spread, high / spread), method="bvls")
+    return np.asarray(found.x) * spread
+
+
+def _range(local: Local, number: Number, scales: Scales) -> tuple[float, float]:
+    """Return what a number may be in the next step; a shape parameter counts from where it is."""
+    fitted_term = local.model.terms[number.term].fitted
+    if number.shape is None:
+        low, high = fitted_term.term.coefficient_bounds(fitted_term.shape)
+        at = local.model.value(number)
+        return min(low, at) - 1e-300, max(high, at) + 1e-300
+    old = fitted_term.shape[number.shape]
+    low, high = shape_bounds(local.model, number, scales)
+    stride = _STRIDE * max(abs(old), 0.1 * (high - low))
+    return max(low - old, -stride) - 1e-300, min(high - old, stride) + 1e-300
+
+
 def _bounded(local: Local, wanted: Array, share: float, scales: Scales) -> list[float]:
-    """Return values part of the way to those wanted, within bounds and no stride too long."""
+    """Return values part of the way to those wanted."""
     result = []
     for n, at, goal in zip(local.numbers, local.values, wanted, strict=True):
-        fitted_term = local.model.terms[n.term].fitted
+        value = at + share * (goal - at)
         if n.shape is None:
+            fitted_term = local.model.terms[n.term].fitted
             low, high = fitted_term.term.coefficient_bounds(fitted_term.shape)
-            value = at + share * (goal - at)
-            result.append(float(np.clip(value, min(low, at), max(high, at))))
-            continue
-        old = fitted_term.shape[n.shape]
-        low, high = shape_bounds(local.model, n, scales)
-        stride = _STRIDE * max(abs(old), 0.1 * (high - low))
-        value = old + float(np.clip(share * goal, -stride, stride))
-        result.append(float(np.clip(value, low, high)))
+            value = float(np.clip(value, min(low, at), max(high, at)))
+        else:
+            low, high = shape_bounds(local.model, n, scales)
+            value = float(np.clip(local.model.value(n) + value, low, high))
+        result.append(float(value))
     return result
 
 

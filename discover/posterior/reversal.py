@@ -37,7 +37,9 @@ class Reversal:
     """Standard deviation between records, over the friction."""
 
 
-def reversal_of(assessor: Assessor, assessed: Assessed) -> Reversal | None:
+def reversal_of(
+    assessor: Assessor, assessed: Assessed, predicting: Assessed
+) -> Reversal | None:
     """Return friction as it was found; None where a model has none, or one of its own curve.
 
     Parameters
@@ -46,6 +48,8 @@ def reversal_of(assessor: Assessor, assessed: Assessed) -> Reversal | None:
         Of the records.
     assessed : Assessed
         The model.
+    predicting : Assessed
+        The same at the numbers that predict best: its friction is given.
     """
     curve, own = assessor.friction, assessor.curve_of(assessed.model)
     if curve is None:
@@ -54,10 +58,11 @@ def reversal_of(assessor: Assessor, assessed: Assessed) -> Reversal | None:
     if own is None or len(at) != 1:
         return None
     space = assessor.space
-    sizes = assessed.place.sizes(space.own_unit)
-    main = assessed.model.terms[at[0]].fitted
-    left = space.sheet.target - assessed.local.force
-    departing, _ = curve_given(space, sizes, left, own, assessed.judged.scale)
+    main = predicting.model.terms[at[0]].fitted
+    left = space.sheet.target - predicting.local.force
+    departing, _ = curve_given(
+        space, predicting.place.sizes(space.own_unit), left, own, predicting.judged.scale
+    )
     plain = assessor.evaluator.unit(main)
     columns = space.columns[:, curve.columns]
     whole = np.concatenate([columns[:, :1], columns[:, 1:] + columns[:, :1]], axis=1)
@@ -67,6 +72,7 @@ def reversal_of(assessor: Assessor, assessed: Assessed) -> Reversal | None:
         total = total + w * (whole[:, places[tuple(t.shape.items())]] - whole[:, 0])
     terms = _few(whole, total, curve)
     without = left + main.coefficient * plain
+    sizes = assessed.place.sizes(space.own_unit)
     follows, sure, size, interval = _turning(assessor, sizes, without, whole, curve)
     friction = max(sum(abs(t.coefficient) for t in terms), 1e-300)
     return Reversal(terms, follows, sure, size, interval, sizes.friction / friction)

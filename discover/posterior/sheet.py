@@ -14,6 +14,7 @@ from models.checks import Array, Indices
 _MOST_ROWS = 400  # of a unit of windows: those of more are compressed
 _SEEN = 0.1  # of the noise, below which a direction of all columns together shows nothing
 _ALIKE = 0.3  # of the logarithm of frequency and of amplitude, within which windows are one unit
+_NOTHING = 1e-60  # of the force: a column that is not there; its square is still a number
 _KERNEL = 1e-3  # of the greatest, below which a direction of the remainder is left out
 
 
@@ -48,7 +49,8 @@ class Sheet:
     remainder: Array
     """(U, F, R) generic functions of the motion."""
     loudness: Array
-    """(U, L, R) what each kind of independent error of the record's own size is in each row."""
+    """(U, L, R) what each kind of independent error of the record's own size is in each row; the
+    last one is the same in all rows."""
     rest: Array
     """(U, 2 + L): number of rows that were left out, their sum of squares, mean loudness squared.
     """
@@ -81,7 +83,7 @@ class Sheet:
     def scale(self, column: Array) -> Array:
         """Return the coefficients (K,) at which columns (U, K, R) make the whole force."""
         share = np.linalg.norm(column, axis=2) / np.maximum(self.size, 1e-300)[:, None]
-        return np.asarray(1.0 / np.maximum(np.sqrt(np.mean(share**2, axis=0)), 1e-300))
+        return np.asarray(1.0 / np.maximum(np.sqrt(np.mean(share**2, axis=0)), _NOTHING))
 
 
 def sheet_of(rows: Sequence[RecordRows], columns: Sequence[Array]) -> Sheet:
@@ -96,7 +98,7 @@ def sheet_of(rows: Sequence[RecordRows], columns: Sequence[Array]) -> Sheet:
         remainder or the measured force show are kept.
     """
     kinds = max(r.loudness.shape[0] for r in rows)
-    rows = [replace(r, loudness=_all_kinds(r.loudness, kinds)) for r in rows]
+    rows = [replace(r, loudness=_all_kinds(r, kinds)) for r in rows]
     units: list[Unit] = []
     parts: list[tuple[Array, Array, Array]] = []
     rest = []
@@ -130,9 +132,12 @@ def sheet_of(rows: Sequence[RecordRows], columns: Sequence[Array]) -> Sheet:
     )  # fmt: skip
 
 
-def _all_kinds(loudness: Array, kinds: int) -> Array:
-    """Return loudness (L, R) with as many kinds as other records have."""
-    return np.concatenate([loudness, np.zeros((kinds - loudness.shape[0], loudness.shape[1]))])
+def _all_kinds(rows: RecordRows, kinds: int) -> Array:
+    """Return loudness (L + 1, R) with as many kinds as other records have, and one that is flat."""
+    own = rows.loudness
+    none = np.zeros((kinds - own.shape[0], own.shape[1]))
+    flat = rows.size / np.sqrt(rows.size.size)
+    return np.concatenate([own, none, flat[None]])
 
 
 def padded(blocks: Sequence[Array], size: int) -> Array:

@@ -72,12 +72,12 @@ class Space:
     @property
     def start(self) -> Place:
         """Sizes from which a search starts."""
-        return Place.start(self.sheet.loudness.shape[1])
+        return Place.start(self.sheet.loudness.shape[1] - 1)
 
     @property
     def quiet(self) -> Place:
         """Sizes of a model that explains all but noise."""
-        return Place.quiet(self.sheet.loudness.shape[1])
+        return Place.quiet(self.sheet.loudness.shape[1] - 1)
 
     def add(self, blocks: Sequence[Array]) -> Indices:
         """Add columns (K, R_r) of every record; return their places."""

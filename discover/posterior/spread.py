@@ -38,8 +38,12 @@ class Spread:
         return float(np.clip(middle - half, low, high)), float(np.clip(middle + half, low, high))
 
 
-def spread_of(assessor: Assessor, assessed: Assessed) -> Spread:
-    """Return the posterior of a model's numbers: a mixture over the sizes that were visited."""
+def spread_of(assessor: Assessor, assessed: Assessed, predicting: Assessed) -> Spread:
+    """Return the posterior of a model's numbers: a mixture over the sizes that were visited.
+
+    It is centred on the numbers that predict best; how far these are from the mixture's own, as a
+    remainder may stand for a part of a term, widens it.
+    """
     local = assessed.local
     start = np.array([local.model.value(n) for n in local.numbers])
     shaped = np.array([n.shape is not None for n in local.numbers])
@@ -59,4 +63,5 @@ def spread_of(assessor: Assessor, assessed: Assessed) -> Spread:
     between = np.array(means) - mean
     whole = np.einsum("w,wpq->pq", share, covariances)
     whole = whole + np.einsum("w,wp,wq->pq", share, between, between)
-    return Spread(local.numbers, mean, whole)
+    centre = np.array([predicting.local.model.value(n) for n in local.numbers])
+    return Spread(local.numbers, centre, whole + np.outer(mean - centre, mean - centre))

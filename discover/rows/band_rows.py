@@ -12,6 +12,7 @@ from models.checks import Array
 
 _TOLERANCE = 3e-5  # of a record's force: no model is better
 _MOST_HATS = 8
+_GROWS = 0.5  # power of the local force's power, with which that of what models miss grows
 _PER_E_FOLD = 3.0  # levels of force that are told apart, for each factor e of frequency
 _PRODUCTS = ((0, 0), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
 """Powers of displacement and velocity whose products stand for a static law."""
@@ -73,9 +74,10 @@ def _remainder(
 
 
 def _local(windows: tuple[Window, ...]) -> Array:
-    """Return the share (R,) of a window's force that is near each row's frequency.
+    """Return the share (R,) of a window's independent error that is in each row.
 
-    What models miss is large where the force is.
+    What models miss is larger where the force is, but not as much: over ten measured machines its
+    amplitude goes as the force's to a power between 0 and 1, 0.6 in the middle.
     """
     omega = np.concatenate([w.omega for w in windows])
     power = np.concatenate([np.abs(w.force) ** 2 for w in windows])
@@ -91,19 +93,19 @@ def _local(windows: tuple[Window, ...]) -> Array:
     found = []
     for w in windows:
         at = np.log(np.maximum(w.omega, lowest))
-        own = np.exp(np.interp(at, middle[shown], np.log(level[shown])))
+        own = np.exp(_GROWS * np.interp(at, middle[shown], np.log(level[shown])))
         found.append(np.tile(own / own.sum() / 2.0, 2))
     return np.concatenate(found)
 
 
 def _hats(windows: tuple[Window, ...], responses: list[Array]) -> list[Array]:
-    """Return hat functions (H, L) of the logarithm of frequency, over the band that moves."""
+    """Return hat functions (H, L) of the logarithm of frequency, from where motion begins."""
     omega = np.concatenate([w.omega for w in windows])
     moving = np.concatenate([np.abs(r) ** 2 for r in responses])
     order = np.argsort(omega)
     total = np.cumsum(moving[order])
-    inside = omega[order][np.searchsorted(total, np.array([0.02, 0.98]) * total[-1])]
-    low, high = np.log(np.maximum(inside, 1e-12))
+    first = omega[order][np.searchsorted(total, 0.02 * total[-1])]
+    low, high = np.log(np.maximum([first, omega.max()], 1e-12))
     count = int(np.clip(np.ceil(high - low), 1, _MOST_HATS - 1)) + 1
     nodes = np.linspace(low, high, count)
     width = max((high - low) / (count - 1), 1e-6)

@@ -42,21 +42,23 @@ def estimated(prepared: Prepared, found: Found) -> Estimates:
     """Return what holds in each band, in numbers."""
     assessor = prepared.device.assessor
     assessed = composite(prepared.device, found)
-    spread = spread_of(assessor, assessed)
-    reversal = reversal_of(assessor, assessed) if prepared.device.with_friction else None
+    best = assessor.predicting(assessed)
+    spread = spread_of(assessor, assessed, best)
+    with_friction = prepared.device.with_friction
+    reversal = reversal_of(assessor, assessed, best) if with_friction else None
     shares = found.banded.shares
     by_band: list[list[TermEstimate]] = [[] for _ in range(found.banded.bands)]
-    for place, placed in enumerate(assessed.model.terms):
+    for place, placed in enumerate(best.model.terms):
         whole = reversal is not None and placed.fitted.id == prepared.device.friction.id
         if whole and reversal is not None:
-            own = _friction(reversal, assessed.model, spread, place)
+            own = _friction(reversal, best.model, spread, place)
         else:
-            own = [_estimate(assessed.model, spread, place)]
+            own = [_estimate(best.model, spread, place)]
         for band, terms in enumerate(by_band):
             if placed.share is None or np.allclose(placed.share, shares[band]):
                 terms += own
     return Estimates(
-        assessor, assessed, spread, reversal, tuple(tuple(terms) for terms in by_band)
+        assessor, best, spread, reversal, tuple(tuple(terms) for terms in by_band)
     )
 
 
