@@ -18,13 +18,14 @@ if TYPE_CHECKING:
     from discover.data_check import check_campaign
     from discover.gap import close_gap
     from discover.readers import read_campaign
-    from discover.study import StudyOptions, run_study
+    from discover.study import StudyOptions, load_study, run_study
 
 __all__ = [
     "StudyOptions",
     "__version__",
     "check_campaign",
     "close_gap",
+    "load_study",
     "read_campaign",
     "run_study",
 ]
@@ -33,6 +34,7 @@ _HOMES = {
     "StudyOptions": "discover.study",
     "check_campaign": "discover.data_check",
     "close_gap": "discover.gap",
+    "load_study": "discover.study",
     "read_campaign": "discover.readers",
     "run_study": "discover.study",
 }
@@ -43,3 +45,8 @@ def __getattr__(name: str) -> "Any":
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    """Return the public names, loaded or not, for tab completion."""
+    return sorted({*globals(), *__all__})

@@ -30,7 +30,7 @@ class RecordCurves:
     dean_standard: float | None
     """The same by the standard convention."""
     time: Array
-    """(n,) s, one or two cycles of a sine test, else the whole record; at most about 600 points."""
+    """(n,) s, two cycles of a sine test, else about twelve turns; at most 600 points."""
     displacement: Array
     """(n,) m."""
     velocity: Array
@@ -136,7 +136,7 @@ class GapCurves:
     amplitude: float | None
     """m, displacement amplitude; None for a record that is no sine test."""
     time: Array
-    """(n,) s, one or two cycles of a sine test, else the whole record; at most about 600 points."""
+    """(n,) s, two cycles of a sine test, else about twelve turns; at most 600 points."""
     displacement: Array
     """(n,) m."""
     velocity: Array

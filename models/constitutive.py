@@ -75,6 +75,12 @@ class FittedTerm:
         text = self.term.unit.format(**{k: f"{v:.4g}" for k, v in self.shape.items()})
         return _FIRST_POWER.sub(r"\1", _NO_POWER.sub("", text))
 
+    @property
+    def told_shape(self) -> dict[str, float]:
+        """Shape parameters that are not at their defaults, SI."""
+        defaults = {p.name: p.default for p in self.term.parameters if not p.scaled_by}
+        return {n: v for n, v in self.shape.items() if defaults.get(n) != v}
+
     def to_dict(self) -> dict[str, Any]:
         """Return id, coefficient, unit and shape parameters, flat as in documents.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from discover.report.words import counted, percent, significant
+from discover.words import counted, percent, significant
 
 
 def serves_text(loop: Mapping[str, Any]) -> str:

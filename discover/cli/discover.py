@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import typer
 
 from discover.cli import options
-from discover.cli.invocation import Invocation
-from discover.cli.results import after_reading, deliver, result_folder, working
-from discover.cli.shipped import shipped_campaign
+from discover.cli.invocation import Invocation, to_copy
+from discover.cli.results import after_reading, deliver, result_folder, shown_path, working
+from discover.cli.shipped import HIDDEN, HIDDEN_MODEL, shipped_campaign
 from models.checks import number, one_of
 
 
@@ -38,11 +40,12 @@ def discover(
     folder = result_folder("discover", source, out)
 
     # Loaded here: --help and complaints about options need no numerics.
+    from discover.document import json_text
     from discover.readers import read_campaign
-    from discover.report.document import json_text
     from discover.report.study import study_figures, study_report
-    from discover.report.verdict import error_lines, verdict_lines
     from discover.study import StudyOptions, run_study
+    from discover.study.verdict import verdict_lines
+    from discover.words import error_lines
 
     with working(f"Reading {source}"):
         measured = read_campaign(source)
@@ -75,7 +78,24 @@ def discover(
         name="study.json",
         folder=folder,
         files=files,
-        summary=(*error_lines(document), *verdict_lines(document)),
+        summary=(*error_lines(document), *verdict_lines(document), next_command(campaign, folder)),
         as_json=as_json,
     )
     return 0
+
+
+def next_command(campaign: Path | None, folder: Path) -> str:
+    """Return the line to copy: what the model misses, of the shipped campaign another one's effect.
+
+    Parameters
+    ----------
+    campaign : Path or None
+        That was studied; None for the shipped one.
+    folder : Path
+        Of its results.
+    """
+    if campaign is None:
+        hidden = shown_path(shipped_campaign(HIDDEN))
+        return f"Next: {to_copy(['gap', hidden, '--model', HIDDEN_MODEL])}"
+    model = str(folder / "model.json")
+    return f"Next: {to_copy(['gap', str(campaign), '--model', model])}"

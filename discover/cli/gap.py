@@ -59,18 +59,18 @@ def gap(
     """Find where a model and the records disagree, name what is missing, and add it."""
     one_of("quantity", on, ("force", "motion"), where="--on")
     only = options.identifiers(effects, where="--effects")
-    folder = result_folder("gap", campaign, out)
+    folder = result_folder("gap", campaign, out, model=model)
 
     # Loaded here: --help and complaints about options need no numerics.
     from discover.cli.baseline_notes import baseline_notes
     from discover.cli.named_model import named_model, paper_values
     from discover.cli.own_effects import asked_effects, listed_effects, own_notes
+    from discover.document import json_text
     from discover.gap import FRACTIONAL, close_gap, term_ids
     from discover.motion_gap import motion_before_and_after, require_system
     from discover.readers import read_campaign
-    from discover.report.document import json_text
     from discover.report.gap import gap_figures, gap_lines, gap_report
-    from discover.report.verdict import warning_lines
+    from discover.words import warning_lines
     from models.terms import TERMS, own_terms
 
     with working("Reading effects"):

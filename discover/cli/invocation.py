@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import shlex
+import shutil
+import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -34,3 +38,16 @@ class Invocation:
         typed = self.arguments
         seeded = any(a == "--seed" or a.startswith("--seed=") for a in typed)
         return shlex.join(["inerter", *typed, *([] if seeded else ["--seed", str(seed)])])
+
+
+def to_copy(arguments: Sequence[str]) -> str:
+    """Return a command that runs here as it stands: by its path where it is on no search path.
+
+    Examples
+    --------
+    >>> to_copy(["gap", "my rig"])
+    "inerter gap 'my rig'"
+    """
+    typed = sys.argv[0]
+    by_path = Path(typed).name == "inerter" and shutil.which("inerter") is None
+    return shlex.join([typed if by_path else "inerter", *arguments])

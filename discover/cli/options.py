@@ -28,7 +28,7 @@ Out = Annotated[
         "-o",
         "--out",
         help="Folder of the results, written whole or not at all"
-        " [default: ./inerter-out/<verb>-<campaign>].",
+        " [default: ./inerter-out/<verb>-<campaign>, of gap with the model's name].",
         show_default=False,
     ),
 ]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import io
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
@@ -14,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 from rich.console import Console
 
-from discover.report.document import json_text
+from discover.document import json_text
 from discover.report.folder import check_replaceable, write_folder
 from discover.report.lock import folder_lock
 from models.checks import InputError, InputErrors
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from discover.records import Campaign
 
 _MOST_WARNINGS = 5
+_LONGEST_LABEL = 100  # characters: file systems end at 255, with the campaign's name
 _run: ContextVar[contextlib.ExitStack | None] = ContextVar("run", default=None)
 
 
@@ -37,8 +40,12 @@ def one_run() -> Iterator[None]:
             _run.reset(token)
 
 
-def result_folder(verb: str, campaign: str | Path, out: Path | None) -> Path:
+def result_folder(
+    verb: str, campaign: str | Path, out: Path | None, *, model: str | None = None
+) -> Path:
     """Return the folder that results go to, held for this run, refused early where it can't be.
+
+    Its name says the verb, the campaign, and the model where the answer depends on one.
 
     Raises
     ------
@@ -46,10 +53,32 @@ def result_folder(verb: str, campaign: str | Path, out: Path | None) -> Path:
         Where it holds something that is not an earlier result, or another run writes to it.
     """
     name = Path(campaign).resolve().name or "campaign"
-    folder = Path("inerter-out", f"{verb}-{name}") if out is None else out
+    named = f"{verb}-{name}" if model is None else f"{verb}-{name}-{model_label(model)}"
+    folder = Path("inerter-out", named) if out is None else out
     hold_folder(folder)
     check_replaceable(folder)
     return folder
+
+
+def model_label(model: str) -> str:
+    """Return a model's name as a part of a folder's: of a model.json, that of its folder.
+
+    Examples
+    --------
+    >>> model_label("ioim-laminar"), model_label("fit:inertia,viscous-damping")
+    ('ioim-laminar', 'fit-inertia-viscous-damping')
+    >>> model_label("inerter-out/discover-rig/model.json"), model_label("mine.json")
+    ('discover-rig', 'mine')
+    """
+    path = Path(model)
+    if path.suffix == ".json":
+        own = path.resolve().parent.name if path.stem == "model" else path.stem
+    else:
+        own = model
+    label = re.sub(r"[^\w.]+", "-", own).strip("-.") or "model"
+    if len(label) <= _LONGEST_LABEL:
+        return label
+    return f"{label[:_LONGEST_LABEL]}-{hashlib.sha256(label.encode()).hexdigest()[:8]}"
 
 
 def hold_folder(folder: Path) -> None:
@@ -143,10 +172,10 @@ def deliver(
     for line in summary:
         typer.echo(line)
     last = written / ("report.html" if "report.html" in files else name)
-    typer.echo(f"{'Report' if last.name == 'report.html' else 'Document'}: {_shown(last)}")
+    typer.echo(f"{'Report' if last.name == 'report.html' else 'Document'}: {shown_path(last)}")
 
 
-def _shown(path: Path) -> str:
+def shown_path(path: Path) -> str:
     """Return `path` as seen from here where it lies below, else in full."""
     here = Path(os.getcwd())
     return str(path.relative_to(here)) if path.is_relative_to(here) else str(path)

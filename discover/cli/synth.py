@@ -13,7 +13,7 @@ from discover.cli import options
 from discover.cli.invocation import Invocation
 from discover.cli.results import hold_folder, working
 from discover.report.folder import check_replaceable, write_folder
-from discover.report.words import counted
+from discover.words import counted
 from models.checks import InputError
 
 _AMPLITUDES = "5,10,20"

@@ -2,8 +2,9 @@
 
 from discover.gap.baseline import Baseline, prepare_baseline, term_ids
 from discover.gap.fractional import FRACTIONAL
-from discover.gap.result import CLOSED, Gap, NamedEffect, RecordGap
+from discover.gap.result import Gap, NamedEffect, RecordGap
 from discover.gap.run import close_gap
+from discover.gap.verdict import CLOSED
 
 __all__ = [
     "CLOSED",

@@ -10,13 +10,12 @@ from discover.figure_data import EffectShape, GapCurves
 from discover.gap.result import NamedEffect
 from discover.motion_fit import Observation
 from discover.rows import Accuracy, RecordRows, force_at_samples
+from discover.shown_samples import shown_samples
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 
-_POINTS = 600
 _SHOWN = 400
-_CYCLES = 2.0
 _UNITS = {"velocity": "m/s", "displacement": "m", "acceleration": "m/s^2", "time": "s"}
 _SCATTERS = 4.0  # times its range, that a force varies by along what it does not follow
 
@@ -25,11 +24,7 @@ def curves(was: Accuracy, now: Accuracy) -> GapCurves:
     """Return a record's curves, decimated: measured, and the model before and after."""
     o = now.observation
     sine = o.kind == "sine"
-    stop = o.time.size
-    if sine:
-        step = float((o.time[-1] - o.time[0]) / (o.time.size - 1))
-        stop = min(stop, int(np.ceil(_CYCLES / (o.frequency * step))) + 1)
-    chosen = np.unique(np.linspace(0, stop - 1, min(_POINTS, stop)).astype(int))
+    chosen = shown_samples(o)
     return GapCurves(
         file=o.file,
         held_out=o.held_out,

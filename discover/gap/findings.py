@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from discover.gap.baseline import Baseline
-from discover.gap.result import CLOSED, NamedEffect
+from discover.gap.result import NamedEffect
 from discover.gap.search import Search, Stage
+from discover.gap.verdict import CLOSED
 from discover.motion_fit import Observation
 from discover.posterior.local import judged
 from discover.records import Finding
@@ -58,7 +59,7 @@ def findings_of(
             Finding(
                 "note",
                 f"Refitting the model's own coefficients alone brings the gap from {gaps[0]:.3g} %"
-                f" to {gaps[1]:.3g} %; the rounds start from there. --fixed holds them.",
+                f" to {gaps[1]:.3g} %; the rounds start from there. `--fixed` holds them.",
             )
         )
     result += _wrong_signs(baseline, found.refitted)

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from discover.answer_html import answer_html
+from discover.document import json_text
 from discover.figure_data import GapFigureData
+from discover.gap.verdict import verdict_lines
 from discover.gap.where import Place
 from discover.header import document_header
 from discover.records import Finding
 from discover.rows import Unexplained
+from discover.words import error_lines, interval, significant, term_name
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 
+if TYPE_CHECKING:
+    import pandas
+
 Interval = tuple[float, float]
-CLOSED = 1.15
-"""Times the noise floor, up to which a gap is closed to it."""
 
 
 @dataclass(frozen=True)
@@ -117,9 +123,12 @@ class RecordGap:
         }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Gap:
-    """The answer of a gap search."""
+    """The answer of a gap search.
+
+    A notebook shows it as its sentences and a table of the mended model's terms.
+    """
 
     title: str
     """The campaign's."""
@@ -173,6 +182,65 @@ class Gap:
     """The mended model."""
     figure_data: GapFigureData
     """For pictures."""
+
+    def __repr__(self) -> str:
+        """Return the campaign's title and the verdict."""
+        names = ", ".join(r.effect for r in self.rounds) or "nothing named"
+        gaps = f"gap {self.gap_percent:.3g} to {self.final_gap_percent:.3g} %"
+        return f"<Gap of {self.title!r}: {self.verdict}, {names}, {gaps}>"
+
+    def _repr_html_(self) -> str:
+        """Return the answer as a notebook shows it."""
+        rows = [
+            [
+                term_name(m.fitted.id), significant(m.fitted.coefficient),
+                interval(m.interval, 4), m.fitted.unit,
+            ]
+            for m in self.mended
+        ]
+        header = ("term of the mended model", "coefficient", "95 % interval", "unit")
+        return answer_html(self.title, self._lines(), header, rows)
+
+    def _lines(self) -> list[str]:
+        document = self.to_dict()
+        return [*error_lines(document), *verdict_lines(document)]
+
+    def summary(self) -> str:
+        """Return the answer in plain sentences, a line each: what ``inerter gap`` prints."""
+        return "\n".join(self._lines())
+
+    def to_frame(self) -> pandas.DataFrame:
+        """Return the mended model's terms as a table, a row each, in SI.
+
+        Columns are term, added (by a round), coefficient, lower, upper (95 %; missing where it was
+        held), unit, and one for every shape parameter that is not at its default.
+        """
+        import pandas
+
+        named = {r.effect for r in self.rounds}
+        rows: list[dict[str, Any]] = [
+            {
+                "term": m.fitted.id,
+                "added": m.fitted.id in named,
+                "coefficient": m.fitted.coefficient,
+                "lower": None if m.interval is None else m.interval[0],
+                "upper": None if m.interval is None else m.interval[1],
+                "unit": m.fitted.unit,
+                **m.fitted.told_shape,
+            }
+            for m in self.mended
+        ]
+        return pandas.DataFrame(rows)
+
+    def save(self, path: str | Path) -> None:
+        """Write the document ``gap.json`` to a file; one that is there is replaced.
+
+        Parameters
+        ----------
+        path : str or Path
+            Of the file.
+        """
+        Path(path).write_text(json_text(self.to_dict()), encoding="utf-8")
 
     def _header(self, name: str) -> dict[str, Any]:
         return document_header(

@@ -12,8 +12,9 @@ from discover.gap.baseline import Baseline, added_to, prepare_baseline
 from discover.gap.figures import curves, shape_of
 from discover.gap.findings import findings_of
 from discover.gap.leftover import leftover_in_words
-from discover.gap.result import CLOSED, Gap, MendedTerm, NamedEffect, RecordGap
+from discover.gap.result import Gap, MendedTerm, NamedEffect, RecordGap
 from discover.gap.search import Round, Search, Stage, search
+from discover.gap.verdict import CLOSED
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import observe_all
 from discover.posterior.grow import Step

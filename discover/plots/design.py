@@ -75,7 +75,7 @@ def prices(document: Mapping[str, Any]) -> str:
         left, right = drawing.subplots(1, 2)
         _bars(left, slopes, "Each 1 % of a dimension, all else kept")
         if bounds:
-            _bars(right, bounds, "Each 1 % that a bound is tightened")
+            _bars(right, bounds, "Each 1 % of a bound")
         else:
             right.set_axis_off()
         title = "Percent of critical frequency for one percent of each dimension and bound"

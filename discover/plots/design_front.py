@@ -62,7 +62,7 @@ def design_front(document: Mapping[str, Any]) -> str | None:
                     zorder=4,
                 )
         axes.set_xlabel("Parasitic damping at the duty's peak speed (N s/m)")
-        axes.set_ylabel("Critical frequency (Hz), paper's Dean number")
+        axes.set_ylabel("Critical frequency (Hz)")
         plain_log_axis(axes, which="x")
         plain_log_axis(axes, which="y")
         figure.legend(loc="outside upper left", ncols=5, columnspacing=1.2)

@@ -16,7 +16,7 @@ from discover.plots.style import (
 )
 
 _IN_ONE = 18
-_ROW = 17.0  # CSS pixels
+_ROW = 18.0  # CSS pixels
 _LONGEST_NAME = 26
 
 
@@ -78,7 +78,7 @@ def _rows(
             axes.plot(*zip(*group, strict=True), **record_marker(structure, held_out=held_out))
         axes.set_ylim(max(height, len(records), 3) - 0.4, -0.6)
         axes.set_yticks(range(len(records)), [_label(r) for r in records])
-        axes.tick_params(axis="y", length=0, labelsize=9, labelcolor=INK)
+        axes.tick_params(axis="y", length=0, labelsize=10, labelcolor=INK)
         axes.grid(visible=False, axis="y")
         axes.spines["left"].set_visible(False)
         plain_log_axis(axes, which="x")

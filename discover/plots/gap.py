@@ -105,15 +105,6 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
             values += [r[f"{key}_after_percent"] for r in rounds]
             if all(v is not None for v in values):
                 axes.plot(range(len(values)), values, "o-", color=colour, label=label)
-            formulas = {
-                i: r["corrected"][f"{key}_by_formula_percent"]
-                for i, r in enumerate(rounds, start=1)
-                if r.get("corrected")
-            }
-            if formulas and None not in formulas.values():
-                label = "by formula" if key == "gap" else ""
-                places, levels = list(formulas), list(formulas.values())
-                axes.plot(places, levels, "o", mfc="none", color=colour, label=label)
         if document.get("noise_percent"):
             axes.axhline(
                 document["noise_percent"],
@@ -180,7 +171,7 @@ def effect_shape(shape: EffectShape, *, name: str) -> str:
                 ".",
                 markersize=3.5,
                 color="#aab4c0",
-                label="measured less the rest of the model",
+                label="measured less the rest",
             )
         axes.fill_between(
             x_scale * shape.x,
@@ -191,7 +182,7 @@ def effect_shape(shape: EffectShape, *, name: str) -> str:
             linewidth=0.0,
             label="95 % band",
         )
-        axes.plot(x_scale * shape.x, scale * shape.force, color=MODEL, label=shape.effect)
+        axes.plot(x_scale * shape.x, scale * shape.force, color=MODEL, label="the effect")
         axes.set(xlabel=f"{shape.abscissa.capitalize()} ({x_unit})", ylabel=f"Force ({unit})")
         figure.legend(loc="outside upper left", ncols=3)
         return to_svg(figure, name=name, title=f"Shape of {shape.effect}")
@@ -211,7 +202,7 @@ def contest(entry: Mapping[str, Any], *, name: str) -> str:
         for row, (_, probability) in enumerate(parts):
             axes.barh(row, 100.0 * probability, height=0.62, color=MODEL if row == 0 else _BEFORE)
             text = "> 99" if probability > 0.995 else f"{100.0 * probability:.0f}"
-            axes.text(100.0 * probability + 1.0, row, f"{text} %", va="center", fontsize=9)
+            axes.text(100.0 * probability + 1.0, row, f"{text} %", va="center", fontsize=10.5)
         axes.set_xlim(0.0, 112.0)
         axes.set_xticks([0, 25, 50, 75, 100])
         axes.set_ylim(len(parts) - 0.5, -0.5)

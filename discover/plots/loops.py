@@ -1,4 +1,4 @@
-"""One record: force over time and over velocity, measured beside the model."""
+"""One record: force over time, displacement and velocity, measured beside the model."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from discover.plots.style import INK, MODEL, house_style, new_figure, scaled, to
 
 
 def loops(record: RecordCurves, *, name: str) -> str:
-    """Draw force–time and force–velocity of `record` as one ``<svg>`` element.
+    """Draw force over time, displacement and velocity of `record` as one ``<svg>`` element.
 
     Parameters
     ----------
@@ -20,22 +20,29 @@ def loops(record: RecordCurves, *, name: str) -> str:
     """
     with house_style():
         figure = new_figure(620, 265)
-        over_time, over_speed = figure.subplots(1, 2, width_ratios=(1.15, 1.0), sharey=True)
+        over_time, over_path, over_speed = figure.subplots(
+            1, 3, width_ratios=(1.25, 1.0, 1.0), sharey=True
+        )
         force_scale, force_unit = scaled(_peak(record.force, record.model_force), "N")
-        speed_scale, speed_unit = scaled(_peak(record.velocity), "m/s")
         measured = force_scale * record.force
         model = force_scale * record.model_force
         start = record.time - record.time[0]
         over_time.plot(start, measured, color=INK, linewidth=1.3, label="measured")
         over_time.plot(start, model, color=MODEL, linewidth=1.5, dashes=(4, 2), label="model")
         over_time.set(xlabel="Time (s)", ylabel=f"Force ({force_unit})")
-        over_speed.plot(speed_scale * record.velocity, measured, color=INK, linewidth=1.3)
-        over_speed.plot(speed_scale * record.velocity, model, color=MODEL, dashes=(4, 2))
-        over_speed.set_xlabel(f"Velocity ({speed_unit})")
-        for axes in (over_time, over_speed):
-            axes.locator_params(nbins=5)
+        for axes, values, unit, quantity in (
+            (over_path, record.displacement, "m", "Displacement"),
+            (over_speed, record.velocity, "m/s", "Velocity"),
+        ):
+            scale, scaled_unit = scaled(_peak(values), unit)
+            axes.plot(scale * values, measured, color=INK, linewidth=1.3)
+            axes.plot(scale * values, model, color=MODEL, dashes=(4, 2))
+            axes.set_xlabel(f"{quantity} ({scaled_unit})")
+        for axes in (over_time, over_path, over_speed):
+            axes.locator_params(axis="x", nbins=3)
+            axes.locator_params(axis="y", nbins=5)
         figure.legend(loc="outside upper left", ncols=2)
-        title = f"Force of {record.file} over time and over velocity, measured and model"
+        title = f"Force of {record.file} over time, displacement and velocity, measured and model"
         return to_svg(figure, name=name, title=title)
 
 

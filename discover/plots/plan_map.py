@@ -56,7 +56,7 @@ def plan_map(data: PlanFigureData) -> str | None:
         plan_labels(axes)
         figure.legend(
             loc="outside upper left",
-            ncols=3,
+            ncols=2,
             handletextpad=0.4,
             columnspacing=1.4,
         )
@@ -132,7 +132,7 @@ def _numbers(axes: Axes, tests: Sequence[PlannedTest]) -> None:
             (test.frequency, 1e3 * test.amplitude),
             xytext=(0, -9),
             textcoords="offset points",
-            fontsize=8.0,
+            fontsize=9.5,
             color=MUTED,
             ha="center",
             va="top",

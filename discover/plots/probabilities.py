@@ -64,7 +64,7 @@ def probability_bars(document: Mapping[str, Any], data: StudyFigureData) -> str 
                         ha="center",
                         va="center",
                         color="white",
-                        fontsize=9.5,
+                        fontsize=10.5,
                         fontweight="bold",
                     )
                 left += probability
@@ -72,7 +72,7 @@ def probability_bars(document: Mapping[str, Any], data: StudyFigureData) -> str 
         axes.set_ylim(len(weighed) - 0.5, -0.5)
         axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25", "50", "75", "100"])
         axes.set_yticks(range(len(weighed)), [f"Band {i + 1}" for i in range(len(weighed))])
-        axes.tick_params(axis="y", length=0, labelsize=10, labelcolor=INK)
+        axes.tick_params(axis="y", length=0, labelsize=11, labelcolor=INK)
         axes.tick_params(axis="x", colors=MUTED)
         axes.grid(visible=False, axis="y")
         axes.spines["left"].set_visible(False)

@@ -136,7 +136,7 @@ def _conditions(axes: Axes, structures: Sequence[Mapping[str, Any]]) -> None:
             f"{text} · rank {structure['rank']} of {structure['columns']}",
             ha="left",
             va="bottom",
-            fontsize=8.5,
+            fontsize=10,
             color=INK if full else "#a83a00",
             fontweight="normal" if full else "bold",
         )

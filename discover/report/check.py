@@ -14,8 +14,7 @@ from discover.figure_data import PlanFigureData
 from discover.plots.plan_map import plan_map
 from discover.plots.separation_matrix import nats_text, separation_matrix
 from discover.report.environment import render
-from discover.report.verdict import named_line
-from discover.report.words import counted, listed, percent, significant
+from discover.words import counted, listed, named_line, percent, significant
 
 
 def check_lines(document: Mapping[str, Any], *, campaign: str) -> list[str]:

@@ -10,8 +10,7 @@ from markupsafe import Markup
 from discover.plots.design import prices, sections
 from discover.plots.design_front import design_front
 from discover.report.environment import render
-from discover.report.verdict import named_line
-from discover.report.words import listed, significant
+from discover.words import listed, named_line, significant
 
 _ROWS = (
     ("cylinder_radius", "Cylinder radius", 1e3, "mm"),

@@ -12,8 +12,7 @@ from discover.plots.record_view import record_view
 from discover.readers import Draft
 from discover.readers.guess import listed
 from discover.report.environment import render
-from discover.report.verdict import named_line
-from discover.report.words import counted
+from discover.words import counted, named_line
 from models.checks import printable
 
 

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
 import jinja2
 from markupsafe import Markup, escape
 
-from discover.report import words
-from discover.report.verdict import not_ruled_out
-from models.terms import TERMS
-
-_ALWAYS = ("order", "exponent")  # shown at their defaults too
-_COUNTED = {"over": "tests"}
-_OF_A_TEST = ("over", "only")
+from discover import words
+from discover.report.equation import equation
+from discover.report.friction_parts import whole_friction
+from discover.shape_words import shape
+from discover.study.verdict import not_ruled_out
 
 
 def unit(text: str) -> Markup:
@@ -46,45 +43,8 @@ def prose(text: str) -> Markup:
     '5_% of it grows as frequency<sup>0.4 ± 0.1</sup>'
     """
     plain = str(escape(text)).replace(" %", f"{words.THIN_SPACE}%")
-    raised = re.sub(r"\^\(([^()]+)\)", r"<sup>\1</sup>", plain)
+    raised = re.sub(r"\^(?:\(([^()]+)\)|(\w)\b)", r"<sup>\1\2</sup>", plain)
     return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", raised))
-
-
-def shape(term: Mapping[str, Any]) -> str:
-    """Return a term's shape parameters with their intervals.
-
-    Examples
-    --------
-    >>> shape({"id": "fractional-derivative", "order": 1.48, "order_interval": [1.42, 1.55]})
-    'order 1.48 (1.42 to 1.55)'
-    >>> shape({"id": "coulomb-friction", "transition_speed": 0.002, "presliding": 0.0})
-    'transition speed 0.002 m/s'
-    >>> shape({"id": "thermal-drift", "from_test": 2.0, "over": 7.0})
-    'from test 2, over 7 tests'
-    >>> shape({"id": "sensor-drift", "over": 1.0, "only": 3.0})
-    'in test 3 only'
-    >>> shape({"id": "sensor-drift", "over": 0.0, "power": 1.0, "only": 3.0})
-    'power 1, in test 3 only'
-    """
-    parts = []
-    known = TERMS.get(str(term.get("id")))
-    alone = float(term.get("only") or 0.0)
-    for parameter in () if known is None else known.parameters:
-        name = parameter.name
-        value = term.get(name)
-        growing = bool(alone) and name == "power" and not term.get("over")
-        if value is None or (value == parameter.default and name not in _ALWAYS and not growing):
-            continue
-        if alone and name in _OF_A_TEST:
-            continue
-        unit = parameter.unit or _COUNTED.get(name, "")
-        unit_text = f" {unit}" if unit else ""
-        text = f"{name.replace('_', ' ')} {words.significant(value, 4)}{unit_text}"
-        spread = words.interval(term.get(f"{name}_interval"), 4)
-        parts.append(f"{text} ({spread})" if spread else text)
-    if alone:
-        parts.append(f"in test {alone:g} only")
-    return ", ".join(parts)
 
 
 @cache
@@ -99,6 +59,7 @@ def environment() -> jinja2.Environment:
     )
     engine.filters.update(
         term_name=words.term_name,
+        short_name=words.short_name,
         significant=words.significant,
         percent=words.percent,
         probability=words.probability,
@@ -106,6 +67,8 @@ def environment() -> jinja2.Environment:
         counted=words.counted,
         band_range=words.band_range,
         not_ruled_out=not_ruled_out,
+        equation=equation,
+        whole_friction=whole_friction,
         capitalize_first=words.capitalize_first,
         prose=prose,
         spread=words.spread,

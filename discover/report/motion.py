@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from discover.report.words import percent
+from discover.words import percent
 
 
 def motion_lines(motion: Mapping[str, Any]) -> list[str]:

@@ -9,8 +9,8 @@ from markupsafe import Markup
 
 from discover.plots.reproduction import order_figure, paper_figure, table_3_figure
 from discover.report.environment import render
-from discover.report.words import counted, significant
 from discover.reproduction import Reproduction
+from discover.words import counted, significant
 
 _GROUPS = (
     ("not-reproduced", "Not borne out by its own formulas"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from discover.report.words import counted, percent
+from discover.words import counted, percent
 
 
 def simulation_lines(document: Mapping[str, Any]) -> list[str]:

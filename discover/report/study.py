@@ -13,8 +13,15 @@ from discover.plots.loops import loops, representative
 from discover.plots.probabilities import probability_bars
 from discover.plots.record_map import record_map
 from discover.report.environment import render
-from discover.report.verdict import boundary_text, named_line, next_purpose, verdict_lines
-from discover.report.words import percent, significant
+from discover.study.verdict import (
+    boundary_text,
+    extras,
+    friction_text,
+    next_purpose,
+    structure_name,
+    verdict_lines,
+)
+from discover.words import named_line, percent, remainder_text, significant
 
 
 def study_figures(document: Mapping[str, Any], data: StudyFigureData) -> dict[str, str]:
@@ -65,7 +72,16 @@ def study_report(
     ]
     boundaries = [boundary_text(b, document) for b in document.get("boundaries", ())]
     verdict = [named_line(line) for line in verdict_lines(document)]
-    check = {"boundary_dean": None, "amplitude_exponent": None, "to_decide": None}
+    check = {"boundary_dean": None, "amplitude_exponent": None, "reason": ""}
+    bands = [
+        {
+            "band": band,
+            "name": structure_name(band),
+            "friction": friction_text(band),
+            "remainder": remainder_text(left) if (left := band.get("remainder_percent")) else "",
+        }
+        for band in document["bands"]
+    ]
     return render(
         "study.html",
         command=command,
@@ -76,12 +92,15 @@ def study_report(
         errors=[Markup(svg) for name, svg in figures.items() if name.startswith("errors-")],
         map_caption=_map_caption(document, data),
         boundaries=boundaries,
+        bands=bands,
+        extras=extras(document),
         loops=pictures,
         records=data.records,
         held_out=sum(r.held_out for r in data.records),
         dean=any(r.dean_paper is not None for r in data.records),
         baselines=data.baselines,
         check={**check, **document["dean_check"]},
+        has_fluid=document["dean_check"]["verdict"] != "no-geometry",
         next_test=_next(document),
     )
 

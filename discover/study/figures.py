@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from discover.figure_data import RecordCurves
 from discover.rows import Accuracy
+from discover.shown_samples import shown_samples
 from models.device import Device
 from models.flow import dean_per_speed
-
-_POINTS = 600
-_CYCLES = 2.0
 
 
 def record_curves(
     accuracy: Accuracy, *, band: int | None, structure: str, device: Device | None
 ) -> RecordCurves:
-    """Return a record's curves: two cycles of a sine test, else the whole record."""
+    """Return a record's curves: two cycles of a sine test, else a stretch."""
     o = accuracy.observation
     sine = o.kind == "sine"
-    stop = o.time.size
-    if sine:
-        step = float((o.time[-1] - o.time[0]) / (o.time.size - 1))
-        stop = min(stop, int(np.ceil(_CYCLES / (o.frequency * step))) + 1)
-    chosen = np.unique(np.linspace(0, stop - 1, min(_POINTS, stop)).astype(int))
+    chosen = shown_samples(o)
     dean = {
         convention: None if device is None else o.speed * dean_per_speed(
             device, convention=convention

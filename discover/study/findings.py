@@ -13,11 +13,11 @@ from discover.records import Campaign, Finding
 from discover.study.options import StudyOptions
 from discover.study.prepare import Prepared, observation_findings
 from discover.study.result import Nuisance, StudyBand
+from discover.study.verdict import MOST_LEFT
 from models.cores import CORES
 from models.terms import TERMS
 
 _NARROW = 1.3  # ratio of frequencies under which a band can't tell an order
-_MOST_LEFT = 0.5  # of the noise, from which what is left is worth a search
 _OTHER_COORDINATE = 5.0  # nats, by which frequency has to beat speed to be worth a word
 _UNSURE = 0.95  # of what stands beside a structure, below which it is said
 
@@ -76,7 +76,7 @@ def _about_band(index: int, band: StudyBand, count: int) -> list[Finding]:
         names = ", ".join(f"{s} ({100 * p:.0f} %)" for s, p in band.equivalents)
         result.append(Finding("warning", f"{name}: the data can't tell apart {names}."))
     low, high = band.remainder.interval
-    if low > _MOST_LEFT * band.noise_percent:
+    if low > MOST_LEFT * band.noise_percent:
         result.append(
             Finding(
                 "warning",
@@ -156,8 +156,9 @@ def _not_as_asked(
 def _about_nuisance(nuisance: Nuisance) -> Finding:
     term = TERMS[nuisance.id]
     low, high = nuisance.interval
+    unit = "" if nuisance.unit == "1" else f" {nuisance.unit}"
     return Finding(
         "note",
         f"{nuisance.id} may belong to a measuring channel: {term.summary}; it is"
-        f" {nuisance.value:.3g} {nuisance.unit} ({low:.3g} to {high:.3g}). The model holds it.",
+        f" {nuisance.value:.3g}{unit} ({low:.3g} to {high:.3g}). The model holds it.",
     )

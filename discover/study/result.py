@@ -5,15 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from discover.answer_html import answer_html
 from discover.dean import DeanCheck
+from discover.document import json_text
 from discover.figure_data import StudyFigureData
 from discover.header import document_header
 from discover.next_test import NextTest
 from discover.records import Finding
 from discover.rows import Unexplained
+from discover.study.verdict import headline, verdict_lines
+from discover.words import error_lines, interval, significant, term_name
 from models.constitutive import FittedTerm, SegmentedModel
+
+if TYPE_CHECKING:
+    import pandas
 
 Interval = tuple[float, float]
 
@@ -38,8 +46,8 @@ class TermEstimate:
             "std_error": self.std_error,
             "interval": list(self.interval),
         }
-        for name, interval in self.shape_intervals.items():
-            result[f"{name}_interval"] = list(interval)
+        for name, ends in self.shape_intervals.items():
+            result[f"{name}_interval"] = list(ends)
         return result
 
 
@@ -211,9 +219,12 @@ class StudyBoundary:
         return result
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study:
-    """The answer of a study."""
+    """The answer of a study.
+
+    A notebook shows it as its sentences and a table of terms.
+    """
 
     title: str
     """The campaign's."""
@@ -251,6 +262,67 @@ class Study:
         """For pictures."""
         return self.draw()
 
+    def __repr__(self) -> str:
+        """Return the campaign's title and the answer in a sentence."""
+        return f"<Study of {self.title!r}: {headline(self.to_dict())}>"
+
+    def _repr_html_(self) -> str:
+        """Return the answer as a notebook shows it."""
+        rows = [
+            [
+                str(number), band.structure, term_name(t.fitted.id),
+                significant(t.fitted.coefficient), interval(t.interval, 4), t.fitted.unit,
+            ]
+            for number, band in enumerate(self.bands, start=1)
+            for t in band.terms
+        ]
+        header = ("band", "structure", "term", "coefficient", "95 % interval", "unit")
+        return answer_html(self.title, self._lines(), header, rows)
+
+    def _lines(self) -> list[str]:
+        document = self.to_dict()
+        return [*error_lines(document), *verdict_lines(document)]
+
+    def summary(self) -> str:
+        """Return the answer in plain sentences, a line each: what ``inerter discover`` prints."""
+        return "\n".join(self._lines())
+
+    def to_frame(self) -> pandas.DataFrame:
+        """Return the bands' terms as a table, a row each, in SI.
+
+        Columns are band (from 1), structure, probability (of the structure), term, coefficient,
+        lower, upper (95 %), unit, and one for every shape parameter that is not at its default.
+        """
+        import pandas
+
+        rows: list[dict[str, Any]] = [
+            {
+                "band": number,
+                "structure": band.structure,
+                "probability": band.probability,
+                "term": t.fitted.id,
+                "coefficient": t.fitted.coefficient,
+                "lower": t.interval[0],
+                "upper": t.interval[1],
+                "unit": t.fitted.unit,
+                **t.fitted.told_shape,
+            }
+            for number, band in enumerate(self.bands, start=1)
+            for t in band.terms
+        ]
+        return pandas.DataFrame(rows)
+
+    def save(self, path: str | Path) -> None:
+        """Write the study with its model to a file that `discover.load_study` reads.
+
+        Parameters
+        ----------
+        path : str or Path
+            Of the file, as ``study.json``; one that is there is replaced.
+        """
+        document = {**self.to_dict(), "model": self.model.to_dict()}
+        Path(path).write_text(json_text(document), encoding="utf-8")
+
     def _header(self, name: str) -> dict[str, Any]:
         return document_header(
             name, seed=self.seed, title=self.title, content_hash=self.content_hash
@@ -260,6 +332,7 @@ class Study:
         """Return the document ``study.json``."""
         result = {
             **self._header("study"),
+            "headline": "",  # its place; said below, from the rest
             "coordinate": self.coordinate,
             "relative_error_percent": self.relative_error_percent,
             "identifiable": self.identifiable,
@@ -272,6 +345,7 @@ class Study:
         }
         if self.held_out_relative_error_percent is not None:
             result["held_out_relative_error_percent"] = self.held_out_relative_error_percent
+        result["headline"] = headline(result)
         return result
 
     def model_dict(self) -> dict[str, Any]:

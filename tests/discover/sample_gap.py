@@ -95,6 +95,11 @@ def sample_gap_document():
                 "gap_after_percent": 2.4,
                 "held_out_before_percent": 21.0,
                 "held_out_after_percent": 2.6,
+                "rms_record_gap_before_percent": 19.0,
+                "rms_record_gap_after_percent": 2.5,
+                "share_percent": 98.6,
+                "shape_adequate": False,
+                "held_out_better": True,
             },
             {
                 "effect": "force-offset",
@@ -108,6 +113,11 @@ def sample_gap_document():
                 "gap_after_percent": 1.2,
                 "held_out_before_percent": 2.6,
                 "held_out_after_percent": 1.3,
+                "rms_record_gap_before_percent": 2.5,
+                "rms_record_gap_after_percent": 1.2,
+                "share_percent": 95.0,
+                "shape_adequate": True,
+                "held_out_better": True,
             },
         ],
         "records": [
@@ -124,4 +134,5 @@ def sample_gap_document():
         "final_gap_percent": 1.2,
         "final_held_out_gap_percent": 1.3,
         "unexplained_percent": 0.1,
+        "remainder_percent": {"value": 0.21, "interval": [0.1, 0.32]},
     }

@@ -62,6 +62,20 @@ def term(identifier, coefficient, unit, **shape):
     }
 
 
+EXTRA = {
+    **term("stiffness", 1210.0, "N/m"),
+    "probability": 0.93,
+    "alternatives": [{"effect": "cubic-stiffness", "probability": 0.06}],
+}
+FRICTION_CURVE = {
+    "curve": "deflects over 0.05 mm before it slides (0.04 to 0.06 mm)",
+    "probability": 0.98,
+    "differs_by_record": 0.021,
+    "presliding_displacement": 5e-5,
+    "presliding_displacement_interval": [4e-5, 6e-5],
+}
+
+
 def sample_data():
     plan = [(f, a) for f in FREQUENCIES for a in AMPLITUDES if f * f * a * 40 < 9.81 * 5]
     records = tuple(curves(f, a, seed=i) for i, (f, a) in enumerate(plan))
@@ -118,7 +132,11 @@ def sample_document():
                         order_interval=[1.42, 1.55],
                     ),
                     term("coulomb-friction", 402.0, "N"),
+                    term("stiffness", 1210.0, "N/m"),
                 ],
+                "extras": [EXTRA],
+                "friction": FRICTION_CURVE,
+                "remainder_percent": {"value": 0.52, "interval": [0.31, 0.68]},
                 "error_percent": 1.3,
                 "relative_error_percent": 2.3,
                 "noise_percent": 2.0,
@@ -140,8 +158,12 @@ def sample_document():
                     term("inertia", 371.2, "kg"),
                     term("quadratic-damping", 91_200.0, "N*s^2/m^2"),
                     term("viscous-damping", 22_010.0, "N*s/m"),
-                    term("coulomb-friction", 398.0, "N"),
+                    term("coulomb-friction", 402.0, "N"),
+                    term("stiffness", 1210.0, "N/m"),
                 ],
+                "extras": [EXTRA],
+                "friction": FRICTION_CURVE,
+                "remainder_percent": {"value": 0.1, "interval": [0.0, 0.25]},
                 "error_percent": 1.2,
                 "relative_error_percent": 2.2,
                 "noise_percent": 2.0,
@@ -173,6 +195,7 @@ def sample_document():
             "boundary_dean_standard": 34.6,
             "amplitude_exponent": -0.97,
             "amplitude_exponent_interval": [-1.12, -0.84],
+            "reason": "The boundary lies at a Dean number that holds 100.",
         },
         "next_test": {
             "frequency_hz": 0.7,

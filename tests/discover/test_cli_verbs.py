@@ -32,14 +32,20 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_discover_prints_five_lines_and_the_report_and_writes_the_folder(campaign, here, capsys):
+def test_discover_prints_the_answer_and_what_is_next_and_writes_the_folder(campaign, here, capsys):
     assert main(["discover", str(campaign)]) == 0
     out, err = capsys.readouterr()
     assert err == ""
     lines = out.splitlines()
     names = [line.split(":")[0] for line in lines]
-    assert names == ["Structure", "Accuracy", "Certainty", "Dean check", "Next test", "Report"]
+    lasting = [n for n in names if n not in ("Beside it", "Friction")]
+    assert lasting == [
+        "Verdict", "Accuracy", "Left over", "Certainty", "Dean check", "Next test", "Next", "Report"
+    ]
     folder = here / "inerter-out" / "discover-laminar"
+    headline = json.loads((folder / "study.json").read_text())["headline"]
+    assert lines[0] == f"Verdict: {headline}."
+    assert headline in (folder / "report.html").read_text().replace("\u202f", " ")
     assert lines[-1] == "Report: " + str(Path("inerter-out", "discover-laminar", "report.html"))
     written = {p.name for p in folder.iterdir()} - {".inerter-files"}
     assert written == {"study.json", "model.json", "report.html", "figures"}
@@ -190,3 +196,15 @@ def test_ctrl_c_exits_130_without_a_traceback_and_leaves_no_results(here):
     assert err == "inerter: interrupted\n"
     assert process.returncode == 130
     assert list(here.iterdir()) == []
+
+
+def test_gap_with_another_model_leaves_the_first_answer_in_its_folder(campaign, here, capsys):
+    for model in ("ioim-laminar", "fit:inertia,quadratic-damping,coulomb-friction"):
+        arguments = ["--model", model, "--effects", "viscous-damping"]
+        assert main(["gap", str(campaign), *arguments]) == 0
+    assert capsys.readouterr().err == ""
+    folders = {p.name for p in (here / "inerter-out").iterdir() if p.is_dir()}
+    assert folders >= {
+        "gap-laminar-ioim-laminar",
+        "gap-laminar-fit-inertia-quadratic-damping-coulomb-friction",
+    }

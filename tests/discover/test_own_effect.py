@@ -47,8 +47,8 @@ def detent(t, x, v, a):
 
 
 def readme_block(title, language="python"):
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    section = text.split(f"## {title}\n")[1].split("\n## ")[0]
+    text = (ROOT / "docs" / "own-effect.md").read_text(encoding="utf-8")
+    section = text.split(f"# {title}\n")[1].split("\n## ")[0]
     return re.search(rf"```{language}\n(.*?)```", section, re.DOTALL)[1]
 
 

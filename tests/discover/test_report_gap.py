@@ -1,9 +1,8 @@
 import pytest
 
 from discover.figure_data import GapFigureData
-from discover.plots.gap import gap_by_round
 from discover.report.gap import gap_figures, gap_lines, gap_report
-from discover.report.verdict import warning_lines
+from discover.words import warning_lines
 from tests.discover.sample_gap import sample_gap_data, sample_gap_document
 from tests.discover.test_report_study import Page
 
@@ -31,15 +30,24 @@ def test_page_is_self_contained_and_carries_each_part():
         "inerter gap rig",
     ):
         assert part in page.text
-    assert page.text.index("Closed: the gap is closed") < page.text.index("How the gap shrinks")
+    verdict = page.text.index("Closed: with Coulomb friction and force offset added")
+    assert verdict < page.text.index("How the gap shrinks")
 
 
 def test_lines_name_effects_with_alternatives_and_both_gaps():
     lines = [line.replace("\u202f", " ") for line in gap_lines(sample_gap_document())]
     assert lines[1] == "Missing: Coulomb friction 93 % and force offset > 99 %."
-    assert "93 %, or Stribeck friction (6 %); gap 18.3 % to 2.4 %" in lines[2]
+    assert lines[2] == (
+        "Round 1: Coulomb friction 93 %, or Stribeck friction (6 %); explains 99 % of what was more"
+        " than noise, gap 18.3 % to 2.4 %; its formula leaves more than noise; records not fitted"
+        " are met better (21 % to 2.6 %)."
+    )
+    assert "; its shape holds; " in lines[3]
     assert lines[4] == (
-        "Gap: 18.3 % before, 1.2 % after; 1.3 % on records that were not fitted; noise floor 1.1 %."
+        "Gap: 18.3 % before, 1.2 % after; 1.3 % on records that were not fitted; noise 1.1 %."
+    )
+    assert lines[5] == (
+        "Left over: of the force, beyond noise, 0.21 % (0.1 to 0.32 %); every record counts alike."
     )
 
 
@@ -63,19 +71,6 @@ def test_nothing_named_still_reports(verdict):
     assert "Round 1" not in page.text
 
 
-def test_the_round_says_how_far_the_formula_alone_came():
-    corrected = {
-        "effects": ["asymmetric-damping", "asymmetric-damping"],
-        "gap_by_formula_percent": 2.5,
-        "held_out_by_formula_percent": 2.7,
-    }
-    document = sample_gap_document()
-    document["rounds"] = [{**document["rounds"][0], "corrected": corrected}]
-    text = " ".join(gap_lines(document)).replace("\u202f", " ")
-    assert "(2.5 % by formula; the curve of asymmetric damping takes 2 more terms)" in text
-    assert "by formula" in (gap_by_round(document) or "")
-
-
 def test_lines_say_what_is_not_told_apart_and_what_refitting_alone_closed():
     document = sample_gap_document()
     first = {**document["rounds"][0], "not_distinguishable_from": ["stribeck-friction"]}
@@ -83,7 +78,7 @@ def test_lines_say_what_is_not_told_apart_and_what_refitting_alone_closed():
     lines = [line.replace("\u202f", " ") for line in gap_lines(document)]
     assert "Coulomb friction 93 % (or Stribeck friction: not told apart)" in lines[1]
     assert "18.3 % as given, 8 % with the model's own coefficients refitted, 1.3 %" in lines[3]
-    assert "what the named shapes may be wrong by" in lines[0]  # 1.3 % is more than 1.1 % of noise
+    assert "added nothing more shows in the tests' own lines" in lines[0]  # above the noise
 
 
 def test_a_restricted_search_does_not_speak_for_the_catalogue():

@@ -6,7 +6,7 @@ import pytest
 
 from discover.figure_data import StudyFigureData
 from discover.report.study import study_figures, study_report
-from discover.report.verdict import dean_line, next_purpose, verdict_lines
+from discover.study.verdict import dean_line, headline, next_purpose, verdict_lines
 from tests.discover.sample_study import sample_data, sample_document
 
 VOID = {"meta", "br", "path", "use", "rect"}
@@ -91,6 +91,11 @@ def test_page_carries_each_part(page):
         "What to do next",
         "inerter discover rig --seed 0",
         "98 (paper convention), 34.6 (standard convention)",
+        "The boundary lies at a Dean number that holds 100.",
+        "Beside the structure",
+        "cubic stiffness (6 %)",
+        "no term explains 0.52 % (0.31 to 0.68 %)",
+        "402 N, deflects over 0.05 mm before it slides (0.04 to 0.06 mm)",
     ):
         assert part in page.text
 
@@ -126,23 +131,60 @@ def test_a_study_without_device_plan_or_probabilities_still_reports():
     document |= {"boundaries": [], "nuisance": [], "findings": [], "next_test": None}
     document["dean_check"] = {"convention": "paper", "criterion": 100.0, "verdict": "no-geometry"}
     page = Page(report(document, StudyFigureData(records=())))
-    assert "no device geometry" in page.text
+    assert "Dean" not in page.text
     assert "no plan of frequencies and amplitudes to map" in page.text
     assert "Measured beside model" not in page.text
 
 
-def test_verdict_is_five_lines_and_names_the_convention():
-    lines = verdict_lines(sample_document())
-    assert [line.split(":")[0] for line in lines] == [
-        "Structure",
+def test_verdict_says_in_each_line_one_thing_and_names_the_convention():
+    lines = {
+        line.split(":")[0]: line.replace("\u202f", " ") for line in verdict_lines(sample_document())
+    }
+    assert list(lines) == [
+        "Verdict",
+        "Beside it",
+        "Friction",
         "Accuracy",
+        "Left over",
         "Certainty",
         "Dean check",
         "Next test",
     ]
-    assert "paper convention" in lines[0]
-    assert "98 (84 to 117), paper convention, criterion 100" in lines[3]
-    assert "IOIM-linear (17\u202f%) not ruled out" in lines[2]
+    assert lines["Beside it"] == (
+        "Beside it: stiffness 1 210 (1 190 to 1 230) N/m, 93 %, or cubic stiffness (6 %)."
+    )
+    assert "it differs between records by 2.1 %" in lines["Friction"]
+    assert ": a displacement and not a speed, 98 %" in lines["Friction"]
+    assert "0.52 % (0.31 to 0.68 %) in band 1" in lines["Left over"]
+    assert "98 (84 to 117), paper convention, criterion 100" in lines["Dean check"]
+    assert "IOIM-linear (17 %) not ruled out" in lines["Certainty"]
+
+
+def test_headline_is_one_sentence_with_structures_boundary_and_dean_verdict():
+    document = sample_document()
+    assert headline(document) == (
+        "two bands of Dean number (paper convention): FOIM of order 1.48 below 98 and IOIM-laminar"
+        " above 98, with presliding and stiffness (boundary 84 to 117); Dean criterion"
+        " 100: the boundary agrees with it"
+    )
+
+
+def test_headline_says_that_something_else_is_in_the_force_where_much_is_left():
+    document = sample_document()
+    document["bands"][1]["remainder_percent"] = {"value": 7.04, "interval": [6.0, 8.0]}
+    assert headline(document).endswith("; the best so far, 7.04\u202f% of the force is unexplained")
+
+
+def test_headline_does_not_state_a_structure_that_may_well_be_another():
+    document = sample_document()
+    document["bands"][0]["probability"] = 0.79
+    said = headline(document)
+    assert "undetermined: FOIM or IOIM-linear below 98 and IOIM-laminar above 98" in said
+    document["bands"] = document["bands"][:1]
+    document["dean_check"] = {"criterion": 100.0, "verdict": "no-geometry"}
+    assert headline(document) == (
+        "undetermined: FOIM or IOIM-linear, with presliding and stiffness in all 19 records"
+    )
 
 
 @pytest.mark.parametrize("verdict", ["consistent", "contradicted", "undetermined", "no-boundary"])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from discover.motion_fit import observe
-from discover.report.verdict import error_lines
 from discover.rows import accuracy, pooled_percent
 from discover.study import StudyOptions, run_study
+from discover.words import error_lines
 from tests.discover.exact import DEVICE_10, DEVICE_12, campaign, fractional, integer, segmented
 
 M1 = (370.38 * 19.25, 0.48, 400.0)

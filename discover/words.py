@@ -78,6 +78,22 @@ def percent(value: float | None) -> str:
     return "–" if value is None else f"{significant(value, 3)}{THIN_SPACE}%"
 
 
+def remainder_text(remainder: Mapping[str, Any]) -> str:
+    """Return what no term explains, with its interval.
+
+    Examples
+    --------
+    >>> remainder_text({"value": 0.5, "interval": [0.3, 0.7]}).split()
+    ['0.5', '%', '(0.3', 'to', '0.7', '%)']
+    >>> remainder_text({"value": 0.0, "interval": [0.0, 0.0]})
+    'none'
+    """
+    low, high = remainder["interval"]
+    if not high:
+        return "none"
+    return f"{percent(remainder['value'])} ({significant(low, 3)} to {percent(high)})"
+
+
 def probability(value: float | None) -> str:
     """Return a probability in percent that never rounds to a certainty it is not.
 
@@ -204,3 +220,33 @@ def capitalize_first(text: str) -> str:
     'IOIM and FOIM'
     """
     return text[:1].upper() + text[1:]
+
+
+def named_line(line: str) -> tuple[str, str]:
+    """Return a line of an answer as its name and its sentence.
+
+    Examples
+    --------
+    >>> named_line("Structure: one band")
+    ('Structure', 'One band')
+    """
+    name, _, text = line.partition(": ")
+    return name, capitalize_first(text)
+
+
+def error_lines(document: Mapping[str, Any]) -> list[str]:
+    """Return what is wrong with the data, which no answer can repair."""
+    return _finding_lines(document, "error", "Error in the data")
+
+
+def warning_lines(document: Mapping[str, Any]) -> list[str]:
+    """Return what a reader of the answer has to know, for the terminal."""
+    return _finding_lines(document, "warning", "Warning")
+
+
+def _finding_lines(document: Mapping[str, Any], level: str, name: str) -> list[str]:
+    return [
+        f"{name}: {f['record'] + ': ' if f.get('record') else ''}{f['text']}"
+        for f in document.get("findings", ())
+        if f["level"] == level
+    ]

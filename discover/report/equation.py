@@ -1,0 +1,111 @@
+"""A model as an equation with its numbers, in MathML: one element a term, so that lines may break.
+
+MathML Core, W3C: browsers draw it without any script or font of the page.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from markupsafe import Markup, escape
+
+from discover.shape_words import shape
+from discover.words import short_name, significant
+
+Entry = Mapping[str, Any]
+
+_X = Markup("<mi>x</mi>")
+_V = Markup("<mi>v</mi>")
+_A = Markup("<mi>a</mi>")
+_CURVE = Markup("<mrow><mi>s</mi><mo>(</mo>{}<mo>,</mo>{}<mo>)</mo></mrow>").format(_X, _V)
+_SPEED = Markup("<mrow><mo>|</mo>{}<mo>|</mo></mrow>").format(_V)
+_SIGN = Markup("<mrow><mi>sgn</mi><mo>&#x2061;</mo>{}</mrow>").format(_V)
+
+
+def equation(terms: Sequence[Entry]) -> Markup:
+    """Return the force as a sum of terms with their numbers, in SI.
+
+    Displacement, velocity and acceleration are x, v and a; s is a curve of friction from -1 to 1.
+
+    Parameters
+    ----------
+    terms : sequence of mapping
+        As in a document: ``id``, ``coefficient``, shape parameters.
+
+    Examples
+    --------
+    >>> str(equation([{"id": "stiffness", "coefficient": -20.0}])).count("<math>")
+    2
+    """
+    parts = [_math(Markup('<mi>F</mi><mo form="infix">=</mo>'))]
+    changes = []
+    for term in terms:
+        if term["id"] in _CHANGES:
+            changes.append(term)
+            continue
+        first = len(parts) == 1
+        parts.append(_math(_signed(float(term["coefficient"]), first=first) + _factor(term)))
+    if len(parts) == 1:
+        parts.append(_math(Markup("<mn>0</mn>")))
+    said = [_CHANGES[c["id"]].format(significant(c["coefficient"], 3)) for c in changes]
+    text = Markup(", ").join(escape(s) for s in said)
+    return Markup(" ").join(parts) + (Markup(", ") + text if said else Markup(""))
+
+
+def _math(inside: Markup) -> Markup:
+    return Markup("<math><mrow>{}</mrow></math>").format(inside)
+
+
+def _signed(value: float, *, first: bool) -> Markup:
+    sign = "−" if value < 0.0 else "" if first else "+"
+    number = Markup('<mn>{}</mn><mspace width="0.17em"/>').format(significant(abs(value), 4))
+    form = "prefix" if first else "infix"
+    return (Markup('<mo form="{}">{}</mo>').format(form, sign) if sign else Markup("")) + number
+
+
+def _power(base: Markup, exponent: object) -> Markup:
+    return Markup("<msup>{}<mn>{}</mn></msup>").format(base, significant(float(str(exponent)), 3))
+
+
+def _fractional(term: Entry) -> Markup:
+    return _power(Markup("<mi>D</mi>"), term["order"]) + _X
+
+
+def _power_law(term: Entry) -> Markup:
+    return _power(_SPEED, term["exponent"]) + _SIGN
+
+
+def _friction(term: Entry) -> Markup:
+    return _CURVE if shape(term) or term.get("parts") else _SIGN
+
+
+_FACTORS: Mapping[str, Callable[[Entry], Markup]] = {
+    "inertia": lambda _: _A,
+    "viscous-damping": lambda _: _V,
+    "quadratic-damping": lambda _: _SPEED + _V,
+    "power-law-damping": _power_law,
+    "fractional-derivative": _fractional,
+    "coulomb-friction": _friction,
+    "stiffness": lambda _: _X,
+    "cubic-stiffness": lambda _: _power(_X, 3),
+    "force-offset": lambda _: Markup(""),
+}
+"""How a term is written after its coefficient; others by name."""
+
+_CHANGES = {
+    "time-delay": "read {} s late",
+    "sensor-gain": "read with a gain off by {}",
+    "series-compliance": "through a spring in series of {} m/N",
+    "backlash": "through a joint with play",
+    "cavitation": "limited in one direction by torn oil",
+    "sensor-clipping": "read by a channel that saturates",
+}
+"""What acts on the motion or on the whole force, and so is no summand."""
+
+
+def _factor(term: Entry) -> Markup:
+    factor = _FACTORS.get(str(term["id"]))
+    if factor is not None:
+        return factor(term)
+    return Markup("<mtext> × {}</mtext>").format(short_name(str(term["id"])))

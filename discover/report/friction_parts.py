@@ -1,0 +1,49 @@
+"""Friction whose curve is a sum of parts, as one row of a table and one summand of an equation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from discover.shape_words import shape
+from discover.words import listed, significant
+from models.cores import FRICTION
+
+
+def whole_friction(terms: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return terms with friction's parts made one, whose ``parts`` say in words what they are.
+
+    The parts share one size, so the ends of their intervals add up.
+
+    Parameters
+    ----------
+    terms : sequence of mapping
+        As in a document.
+
+    Examples
+    --------
+    >>> part = {"id": "coulomb-friction", "unit": "N"}
+    >>> parts = [{**part, "coefficient": 100.0, "transition_speed": 0.001},
+    ...          {**part, "coefficient": 20.0, "presliding": 2e-5}]
+    >>> (whole,) = whole_friction(parts)
+    >>> whole["coefficient"], whole["parts"]
+    (120.0, '100 N with transition speed 0.001 m/s and 20 N with presliding 2×10⁻⁵ m')
+    """
+    parts = [t for t in terms if t["id"] == FRICTION]
+    if len(parts) < 2:
+        return [dict(t) for t in terms]
+    whole: dict[str, Any] = {
+        "id": FRICTION,
+        "coefficient": sum(p["coefficient"] for p in parts),
+        "unit": parts[0]["unit"],
+        "parts": listed(
+            f"{significant(p['coefficient'], 3)} {p['unit']} with {shape(p) or 'a jump'}"
+            for p in parts
+        ),
+    }
+    ends = [p.get("interval") for p in parts]
+    if all(ends):
+        whole["interval"] = [sum(e[i] for e in ends if e) for i in (0, 1)]
+    first = list(terms).index(parts[0])
+    rest = [dict(t) for t in terms if t["id"] != FRICTION]
+    return [*rest[:first], whole, *rest[first:]]

@@ -1,0 +1,323 @@
+"""A study's answer in plain sentences: what holds where, how well, how surely, what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from discover.shape_words import shape
+from discover.words import (
+    band_range,
+    coordinate_name,
+    coordinate_value,
+    counted,
+    interval,
+    listed,
+    percent,
+    probability,
+    remainder_text,
+    short_name,
+    significant,
+)
+from models.cores import FRICTION, OTHER
+
+SURE = 0.8
+"""Probability under which a structure is not stated: whoever acts on it is wrong once in five."""
+
+MOST_LEFT = 0.5
+"""Of the noise: where no term explains more than that, a structure is the best so far."""
+
+
+def headline(document: Mapping[str, Any]) -> str:
+    """Return the answer in one sentence: a structure a band, the boundary, the Dean verdict.
+
+    Parameters
+    ----------
+    document : mapping
+        The study as in ``study.json``.
+    """
+    bands = document["bands"]
+    if not bands:
+        return "no band could be formed from these records"
+    names = [structure_name(b) for b in bands]
+    besides = _besides(bands[0])
+    if len(bands) == 1:
+        count = len(bands[0]["records"])
+        where = "the one record" if count == 1 else f"all {counted(count, 'record')}"
+        return f"{names[0]}{besides} in {where}{_dean_short(document)}{_so_far(document)}"
+    coordinate = str(document["coordinate"])
+    parts = [f"{n} {band_range(b, coordinate)}" for n, b in zip(names, bands, strict=True)]
+    number = _NUMBERS.get(len(bands), str(len(bands)))
+    ends = [i for b in document.get("boundaries", ()) if (i := interval(b.get("interval")))]
+    where = f"{number} bands of {coordinate_name(document)}: {listed(parts)}"
+    unit = {"speed": " m/s", "frequency": " Hz"}.get(coordinate, "")
+    known = f" (boundary {listed(ends)}{unit})" if ends else ""
+    return f"{where}{besides}{known}{_dean_short(document)}{_so_far(document)}"
+
+
+def verdict_lines(document: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the sentences that the terminal and the report lead with.
+
+    Parameters
+    ----------
+    document : mapping
+        The study as in ``study.json``.
+    """
+    lines = (
+        f"Verdict: {headline(document)}.",
+        extras_line(document),
+        friction_line(document),
+        accuracy_line(document),
+        remainder_line(document),
+        certainty_line(document),
+        dean_line(document),
+        next_line(document),
+    )
+    return tuple(line for line in lines if line)
+
+
+_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
+
+
+def structure_name(band: Mapping[str, Any]) -> str:
+    """Return a band's structure with the order that was found, or what it may be.
+
+    Examples
+    --------
+    >>> open_band = {"structure": "FOIM", "probability": 0.6, "terms": [], "equivalents": [
+    ...     {"structure": "FOIM", "probability": 0.6},
+    ...     {"structure": "IOIM-linear", "probability": 0.4}]}
+    >>> structure_name(open_band)
+    'undetermined: FOIM or IOIM-linear'
+    """
+    name = str(band["structure"])
+    sure = band.get("probability")
+    if sure is not None and sure < SURE:
+        names = [str(e["structure"]) for e in band.get("equivalents", ())]
+        return f"undetermined: {listed(names or [name], last='or')}"
+    if name == OTHER:
+        return f"other ({listed(short_name(str(t['id'])) for t in band['terms'])})"
+    orders = [t["order"] for t in band["terms"] if t.get("order") is not None]
+    return f"{name} of order {listed(significant(o, 3) for o in orders)}" if orders else name
+
+
+def _besides(band: Mapping[str, Any]) -> str:
+    """Return what the device has beside its structure, by name: the same in all bands."""
+    names = [short_name(str(e["id"])) for e in band.get("extras", ())]
+    friction = band.get("friction") or {}
+    if "presliding_displacement" in friction:
+        names.insert(0, "presliding")
+    return f", with {listed(names)}" if names else ""
+
+
+def _dean_short(document: Mapping[str, Any]) -> str:
+    check = document["dean_check"]
+    verdict = check["verdict"]
+    if verdict == "no-geometry":
+        return ""
+    if verdict == "no-boundary":
+        return "; no boundary, so nothing to hold the Dean criterion to"
+    said = {
+        "consistent": "agrees with it", "contradicted": "contradicts it",
+        "undetermined": "leaves it undetermined",
+    }[verdict]
+    return f"; Dean criterion {significant(check['criterion'], 3)}: the boundary {said}"
+
+
+def _so_far(document: Mapping[str, Any]) -> str:
+    """Return that something else is in the force, where no term explains much of it."""
+    lefts = [
+        b["remainder_percent"]["value"] for b in document["bands"]
+        if b.get("remainder_percent") and b.get("noise_percent") is not None
+        and b["remainder_percent"]["interval"][0] > MOST_LEFT * b["noise_percent"]
+    ]
+    return f"; the best so far, {percent(max(lefts))} of the force is unexplained" if lefts else ""
+
+
+def extras(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return what the device has beside its structures, each once with its numbers."""
+    seen: list[Mapping[str, Any]] = []
+    for band in document["bands"]:
+        for extra in band.get("extras", ()):
+            if not any(_same(extra, e) for e in seen):
+                seen.append(extra)
+    return seen
+
+
+def _same(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    return all(one[key] == other[key] for key in ("id", "coefficient"))
+
+
+def extras_line(document: Mapping[str, Any]) -> str:
+    """Say what stands beside the structures, with numbers and how surely; "" for nothing."""
+    texts = [_extra(e) for e in extras(document)]
+    return f"Beside it: {'; '.join(texts)}." if texts else ""
+
+
+def _extra(extra: Mapping[str, Any]) -> str:
+    unit = "" if extra["unit"] == "1" else f" {extra['unit']}"
+    text = f"{short_name(str(extra['id']))} {significant(extra['coefficient'], 3)}"
+    text += f" ({interval(extra['interval'])}){unit}"
+    told = shape({key: value for key, value in extra.items() if not key.endswith("_interval")})
+    if told:
+        text += f", {told}"
+    text += f", {probability(extra['probability'])}"
+    others = [
+        f"{short_name(str(a['effect']))} ({probability(a['probability'])})"
+        for a in extra.get("alternatives", ())
+    ]
+    return f"{text}, or {listed(others, last='or')}" if others else text
+
+
+def friction_text(band: Mapping[str, Any]) -> str:
+    """Return a band's friction in words: how much, how it reverses, how records differ."""
+    friction = band.get("friction")
+    if not friction:
+        return ""
+    size = sum(t["coefficient"] for t in band["terms"] if t["id"] == FRICTION)
+    text = f"{significant(size, 3)} N, {friction['curve']}"
+    if "presliding_displacement" in friction or "transition_speed" in friction:
+        pair = ("a displacement", "a speed")
+        over, other = pair if "presliding_displacement" in friction else pair[::-1]
+        text += f": {over} and not {other}, {probability(friction['probability'])}"
+    if friction["differs_by_record"] >= _WORTH_SAYING:
+        differs = percent(100.0 * friction["differs_by_record"])
+        text += f"; it differs between records by {differs}"
+    return text
+
+
+_WORTH_SAYING = 0.001  # of the friction: less reads as 0.0 %
+
+
+def friction_line(document: Mapping[str, Any]) -> str:
+    """Say how friction reverses; "" without friction."""
+    texts = list(dict.fromkeys(t for b in document["bands"] if (t := friction_text(b))))
+    if len(texts) > 1:
+        texts = [
+            f"band {i}: {t}" for i, b in enumerate(document["bands"], start=1)
+            if (t := friction_text(b))
+        ]
+    return f"Friction: {'; '.join(texts)}." if texts else ""
+
+
+def accuracy_line(document: Mapping[str, Any]) -> str:
+    """Say how much of the force the model misses, beside the noise."""
+    text = f"Accuracy: the model misses {percent(document['relative_error_percent'])} of the force"
+    floors = [b["noise_percent"] for b in document["bands"] if b.get("noise_percent") is not None]
+    if floors:
+        text += f" (noise {_range(floors)})"
+    held_out = document.get("held_out_relative_error_percent")
+    if held_out is not None:
+        text += f", and {percent(held_out)} on records that were not fitted"
+    return text + "."
+
+
+def _range(values: Sequence[float]) -> str:
+    least, most = min(values), max(values)
+    return percent(most) if most - least < 0.1 * most else f"{percent(least)} to {percent(most)}"
+
+
+def remainder_line(document: Mapping[str, Any]) -> str:
+    """Say how much of the force neither a term nor noise explains."""
+    texts = [
+        remainder_text(b["remainder_percent"])
+        for b in document["bands"] if b.get("remainder_percent")
+    ]
+    if len(texts) > 1:
+        texts = [f"{t} in band {i}" for i, t in enumerate(texts, start=1)]
+    if not texts:
+        return ""
+    return f"Left over: of the force, beyond noise, {listed(texts)}; every record counts alike."
+
+
+def certainty_line(document: Mapping[str, Any]) -> str:
+    """Say how sure the structures are and what can't be ruled out."""
+    parts = []
+    several = len(document["bands"]) > 1
+    for number, band in enumerate(document["bands"], start=1):
+        text = f"{band['structure']} {probability(band.get('probability'))}"
+        others = [
+            f"{e['structure']} ({probability(e['probability'])})" for e in not_ruled_out(band)
+        ]
+        if others:
+            text += f", {listed(others)} not ruled out"
+        parts.append(f"band {number}: {text}" if several else text)
+    if not parts:
+        return "Certainty: nothing to weigh."
+    ending = "" if document.get("identifiable", True) else "; these records leave that open"
+    return f"Certainty: {'; '.join(parts)}{ending}."
+
+
+def not_ruled_out(band: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return a band's equivalents without its own structure."""
+    return [e for e in band.get("equivalents", ()) if e["structure"] != band["structure"]]
+
+
+_WHY = {
+    "consistent": "the boundary lies at a constant Dean number that agrees with the criterion",
+    "contradicted": "the boundary does not follow the criterion",
+    "undetermined": "these records can't decide it",
+    "no-boundary": "one structure holds throughout, so there is no boundary to check",
+}
+
+
+def dean_line(document: Mapping[str, Any]) -> str:
+    """Say what the Dean check found, its convention named; "" where no fluid is known."""
+    check = document["dean_check"]
+    verdict = str(check["verdict"])
+    if verdict == "no-geometry":
+        return ""
+    text = f"Dean check: {verdict}: {_WHY[verdict]}"
+    boundary = check.get("boundary_dean")
+    if boundary is not None:
+        text += f"; boundary at De {significant(boundary, 3)}"
+        spread = interval(check.get("interval"))
+        if spread:
+            text += f" ({spread})"
+        text += (
+            f", {check['convention']} convention, criterion {significant(check['criterion'], 3)}"
+        )
+    return text + "."
+
+
+def next_line(document: Mapping[str, Any]) -> str:
+    """Say which test to run next, or that none is needed."""
+    test = document.get("next_test")
+    if not test or test.get("frequency_hz") is None:
+        if document.get("identifiable", True):
+            return "Next test: none needed; no pair of structures is left to tell apart."
+        return "Next test: none proposed."
+    amplitude = significant(1e3 * test["amplitude_m"], 3)
+    purpose = next_purpose(test)
+    return (
+        f"Next test: {significant(test['frequency_hz'], 3)} Hz at {amplitude} mm"
+        + (f", which best {purpose}" if purpose else "")
+        + "."
+    )
+
+
+def next_purpose(test: Mapping[str, Any]) -> str:
+    """Say what the next test does best; "" where that is not said.
+
+    Two bands of one structure are separated by their boundary alone.
+    """
+    separates = [str(s) for s in test.get("separates", ())]
+    if len(set(separates)) == 1:
+        return f"narrows the boundary between the bands of {separates[0]}"
+    return f"tells {listed(separates, last='from')}" if separates else ""
+
+
+def boundary_text(boundary: Mapping[str, Any], document: Mapping[str, Any]) -> str:
+    """Return one boundary in words, in the study's coordinate."""
+    coordinate = str(document["coordinate"])
+    text = f"{coordinate_name(document)} {coordinate_value(boundary['coordinate'], coordinate)}"
+    spread = interval(boundary.get("interval"))
+    if spread:
+        text += f" (interval {spread})"
+    bracket = interval(boundary.get("bracket"))
+    if bracket:
+        text += f", between the records at {bracket}"
+    width = boundary.get("width")
+    if width:
+        text += f"; a gradual change, {significant(width, 2)} wide"
+    return text
