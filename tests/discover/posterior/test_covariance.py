@@ -15,11 +15,11 @@ from models.terms import TERMS
 from tests.discover.posterior.small import APART, dense, flat, log_density, rows_of
 
 SIZES = {
-    "noise": Sizes(0.0, (0.0,), 0.0),
-    "loud": Sizes(0.0, (0.03,), 0.0),
-    "remainder": Sizes(0.1, (0.0,), 0.0),
-    "own friction": Sizes(0.0, (0.0,), 8.0),
-    "all": Sizes(0.05, (0.01,), 5.0),
+    "noise": Sizes(0.0, (0.0, 0.0), 0.0),
+    "loud": Sizes(0.0, (0.03, 0.0), 0.0),
+    "remainder": Sizes(0.1, (0.0, 0.0), 0.0),
+    "own friction": Sizes(0.0, (0.0, 0.0), 8.0),
+    "all": Sizes(0.05, (0.01, 0.002), 5.0),
 }
 
 
