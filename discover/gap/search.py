@@ -152,12 +152,13 @@ def search(
     while len(rounds) < most:
         there = {p.fitted.id for p in here.assessed.model.terms if not p.held}
         open_ids = [e for e in effects if e not in there]
-        last = grown(assessor, here.assessed, open_ids)
-        added, rejected = _accepted(baseline, here, last)
-        if added is None:
+        last, refused = _accepted(baseline, here, grown(assessor, here.assessed, open_ids))
+        rejected = refused[0] if refused else None
+        added = last.best
+        if not added.id or added.assessed is None:
             break
         after, dropped = _without_superfluous(baseline, rounds, added)
-        effect = last.candidates[0].id if rejected is None else added.id
+        effect = added.id
         rounds.append(Round(effect, last, here, after, dropped))
         here = after
         if tell is not None:
@@ -177,20 +178,17 @@ def _given(baseline: Baseline) -> Stage:
     return Stage(assessed, assessed, tuple(models), accuracies, held or accuracies)
 
 
-def _accepted(
-    baseline: Baseline, here: Stage, step: Step
-) -> tuple[Candidate | None, str | None]:
-    """Return the most probable candidate that predicts what is not fitted better."""
-    rejected = None
+def _accepted(baseline: Baseline, here: Stage, step: Step) -> tuple[Step, tuple[str, ...]]:
+    """Return a step without what is more probable but predicts what is not fitted worse."""
+    refused: list[str] = []
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
-            return None, rejected
-        after = stage(baseline, candidate.assessed)
-        was, now = here.unseen_gap, after.unseen_gap
+            break
+        was, now = here.unseen_gap, stage(baseline, candidate.assessed).unseen_gap
         if was is None or now is None or now < was:
-            return candidate, rejected
-        rejected = rejected or candidate.id
-    return None, rejected
+            break
+        refused.append(candidate.id)
+    return step.without(refused), tuple(refused)
 
 
 def _without_superfluous(

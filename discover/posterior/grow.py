@@ -49,6 +49,10 @@ class Step:
         """The most probable."""
         return self.candidates[0]
 
+    def without(self, ids: Collection[str]) -> Step:
+        """Return the step without some candidates, refused as they do not predict."""
+        return Step(tuple(c for c in self.candidates if c.id not in ids))
+
     @property
     def probabilities(self) -> dict[str, float]:
         """Of every id, and of "" for the model as it is."""
