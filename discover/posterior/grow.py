@@ -16,7 +16,7 @@ from models.terms import TERMS
 
 _NAMES = 5  # that are fitted, of those that gain most
 _SHAPES = 2  # of each, from which a fit starts
-_IMPACTS = 5  # likewise, where there are impacts
+_IMPACTS = 3  # likewise, where there are impacts
 _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already

@@ -4,7 +4,7 @@ import numpy as np
 
 from models.checks import Array
 from models.motion import Motion
-from models.terms.hysteresis import bristle_state
+from models.terms.hysteresis import bristle_state, slider_state
 from models.terms.scales import Scales
 from models.terms.term import Parameter, Shape, Start, Term
 
@@ -19,10 +19,13 @@ def column(motion: Motion, shape: Shape) -> Array:
     instead, 0 for a jump, along the plain curve: seals differ, and a limit may be approached in
     two stages.
     With a `relative_speed` the transition speed is that share of the motion's greatest speed.
-    With a `presliding` length (m) it is the state of bristles that deflect before they slip.
+    With a `presliding` length (m) it is the state of bristles that deflect before they slip, or
+    with `form` 1 of an elastic slider: the one slips more and more, the other at once.
     """
-    if shape.get("presliding", 0.0) > 0.0:
-        return bristle_state(motion, shape["presliding"])
+    length = shape.get("presliding", 0.0)
+    if length > 0.0:
+        sudden = shape.get("form", 0.0) > 0.0
+        return slider_state(motion, length) if sudden else bristle_state(motion, length)
     transition = shape.get("transition_speed", 0.0)
     if shape.get("relative_speed", 0.0) > 0.0:
         transition = shape["relative_speed"] * float(np.abs(motion.velocity).max())
@@ -68,6 +71,7 @@ def curves(scales: Scales) -> list[Shape]:
         {},
         *({"transition_speed": s} for s in speeds),
         *({"presliding": z} for z in lengths),
+        *({"presliding": z, "form": 1.0} for z in lengths),
         *({"relative_speed": r} for r in _doubling(0.003, 0.1)),
     ]
 

@@ -53,6 +53,12 @@ def bristle_state(motion: Motion, length: float, holds: Array | None = None) -> 
     return np.asarray(_dahl(x, length, shares, passes=2 if motion.periodic else 1))
 
 
+def slider_state(motion: Motion, length: float) -> Array:
+    """Return an elastic slider's deflection over its limit, in [-1, 1]: it slips after `length`, m."""
+    x = np.ascontiguousarray(motion.displacement)
+    return np.asarray(_stop(x, length, passes=2 if motion.periodic else 1))
+
+
 def column(motion: Motion, shape: Shape) -> Array:
     """Return the friction force over its limit, in [-1, 1].
 
