@@ -23,6 +23,7 @@ from discover.posterior.left_out import predicts_better
 from discover.posterior.model import Evaluator
 from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
+from discover.posterior.spread import is_told
 from discover.posterior.structures import Variant
 from discover.rows import RecordRows, force_rows
 from discover.rows.columns import Behind
@@ -216,12 +217,16 @@ def _with_one_more(device: Device, way: Found) -> Found | Step:
 
 
 def _that_predict(assessor: Assessor, now: Assessed, step: Step) -> Step:
-    """Return a step without what is more probable but does not predict records left out better."""
+    """Return a step without what is more probable but does not predict records left out better.
+
+    Nor may it be a term whose sign the records don't tell.
+    """
     refused = []
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
             break
-        if predicts_better(assessor, now, candidate.assessed):
+        told = is_told(assessor, candidate.assessed, candidate.count)
+        if told and predicts_better(assessor, now, candidate.assessed):
             break
         refused.append(candidate.id)
     return step.without(refused)

@@ -12,6 +12,7 @@ from discover.posterior.local import judged
 from discover.posterior.model import Number
 from models.checks import Array
 
+_SURE = 1.96  # standard deviations, at which 95 % are of one sign
 _LEAST = 0.01  # of the posterior, from which sizes count
 
 
@@ -33,7 +34,7 @@ class Spread:
 
     def interval(self, place: int, low: float, high: float) -> tuple[float, float]:
         """Return the 95 % interval of a number that lies between bounds."""
-        half = 1.96 * float(self.deviation[place])
+        half = _SURE * float(self.deviation[place])
         middle = float(self.mean[place])
         return float(np.clip(middle - half, low, high)), float(np.clip(middle + half, low, high))
 
@@ -65,3 +66,17 @@ def spread_of(assessor: Assessor, assessed: Assessed, predicting: Assessed) -> S
     whole = whole + np.einsum("w,wp,wq->pq", share, between, between)
     centre = np.array([predicting.local.model.value(n) for n in local.numbers])
     return Spread(local.numbers, centre, whole + np.outer(mean - centre, mean - centre))
+
+
+def is_told(assessor: Assessor, assessed: Assessed, count: int) -> bool:
+    """Tell whether the records tell the sign of a coefficient among a model's last terms.
+
+    A term that is probable beside a remainder, but that a model which has to predict by itself
+    may as well do without, stands for a part of that remainder.
+    """
+    best = assessor.predicting(assessed)
+    first = len(assessed.model.terms) - count
+    last = [i for i, n in enumerate(best.local.numbers) if n.term >= first and n.shape is None]
+    found = best.judged.solved
+    deviation = np.sqrt(np.diagonal(found.covariance))
+    return bool(np.any(np.abs(found.mean[last]) > _SURE * deviation[last]))
