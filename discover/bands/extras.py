@@ -18,7 +18,7 @@ from discover.bands.search import Banded, BandSearch, searched
 from discover.bands.variants import Grids, variants_of
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.climb import Place
-from discover.posterior.grow import Candidate, Step, grown
+from discover.posterior.grow import Step, grown
 from discover.posterior.left_out import predicts_better
 from discover.posterior.model import Evaluator
 from discover.posterior.setup import space_of
@@ -199,9 +199,9 @@ def _with_one_more(device: Device, way: Found) -> Found | Step:
     now = composite(device, way)
     there = {j.id for j in way.joined}
     open_ids: Collection[str] = [i for i in device.extras if i not in there]
-    step = grown(assessor, now, open_ids)
-    best = _that_predicts(assessor, now, step)
-    if best is None or best.assessed is None:
+    step = _that_predict(assessor, now, grown(assessor, now, open_ids))
+    best = step.best
+    if not best.id or best.assessed is None:
         return step
     terms = best.assessed.model.terms[-best.count :]
     new = Joined(
@@ -215,11 +215,13 @@ def _with_one_more(device: Device, way: Found) -> Found | Step:
     return _searched(device, (*old, new), best.assessed.place, best.assessed)
 
 
-def _that_predicts(assessor: Assessor, now: Assessed, step: Step) -> Candidate | None:
-    """Return the most probable term that predicts records left out better; None without one."""
+def _that_predict(assessor: Assessor, now: Assessed, step: Step) -> Step:
+    """Return a step without what is more probable but does not predict records left out better."""
+    refused = []
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
-            return None
+            break
         if predicts_better(assessor, now, candidate.assessed):
-            return candidate
-    return None
+            break
+        refused.append(candidate.id)
+    return step.without(refused)

@@ -58,7 +58,7 @@ class Banded:
     @property
     def bands(self) -> int:
         """Number of bands."""
-        return self.shares.shape[0]
+        return int(self.shares.shape[0])
 
 
 @dataclass
@@ -130,8 +130,11 @@ class BandSearch:
         first = np.zeros((1, 1), dtype=int)
         return self._banded("", whole, (), first, start, 0.0, [()])
 
-    def divided_again(self, now: Banded) -> Banded | None:
-        """Return the best division with one band more; None where there are too few units."""
+    def divided_again(self, now: Banded, *, asked: bool) -> Banded | None:
+        """Return the best division with one band more.
+
+        None where there are too few units, or where it is not asked for and can't be more probable.
+        """
         kinds = [now.coordinate] if now.coordinate else list(self.coordinates)
         shares, brackets, starts, names = [], [], [], []
         for name in kinds:
@@ -150,7 +153,7 @@ class BandSearch:
         if not len(whole):
             return None
         prior = now.bands * -_LOG_2 - float(np.log(len(whole)))
-        if now.quiet:
+        if now.quiet and not asked:
             answer = self.many(now.place, now.scale, whole, np.concatenate(starts))
             most = now.value + float(logsumexp(answer.value)) - now.at_place
             if most + prior < now.value:  # nothing is left that one more band could explain
@@ -249,7 +252,7 @@ def searched(
     found = [search.one_band(search.space.start if start is None else start)]
     most = MOST_BANDS if bands is None else bands
     while found[-1].bands < most:
-        more = search.divided_again(found[-1])
+        more = search.divided_again(found[-1], asked=bands is not None)
         if more is None:
             break
         found.append(more)

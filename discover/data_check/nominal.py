@@ -58,8 +58,7 @@ class Structure:
         return np.column_stack([columns, (columns[:, :1] - moved) / _STEP])
 
     def force(self, plan: Plan) -> Array:
-        """Return a nominal force (R,): its terms but friction alike, as large as the measured one.
-        """
+        """Return a nominal force (R,): its terms but friction alike, as large as measured."""
         columns = plan.columns(self.terms(self.nominal))[:, :-1]
         size = np.linalg.norm(columns, axis=0)
         total = np.sum(columns[:, size > 0.0] / size[size > 0.0], axis=1)

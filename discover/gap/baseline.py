@@ -11,6 +11,7 @@ from discover.motion_fit import Observation
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.local import judged, local_of
 from discover.posterior.model import Composite, Evaluator, Placed
+from discover.posterior.reversal import reversal_of
 from discover.posterior.setup import space_of
 from discover.rows import RecordRows, record_rows
 from models.checks import InputError
@@ -134,6 +135,25 @@ def fit_terms(assessor: Assessor, ids: Sequence[str]) -> Assessed:
     return assessor.assess(best, space.start)
 
 
+def few_curves(
+    assessor: Assessor, found: Assessed, best: Assessed, model: ForceModel
+) -> ForceModel:
+    """Return a model as it was found, friction by the few curves that make its whole curve."""
+    reversal = reversal_of(assessor, found, best)
+    if reversal is None:
+        return model
+    name = reversal.terms[0].id
+    place = next(i for i, t in enumerate(model.terms) if t.id == name)
+    terms = (*model.terms[:place], *reversal.terms, *model.terms[place + 1 :])
+    return ForceModel(terms, model.name)
+
+
+def _predicting(assessor: Assessor, found: Assessed) -> ForceModel:
+    """Return a model at the numbers that predict best, friction by few curves."""
+    best = assessor.predicting(found)
+    return few_curves(assessor, found, best, best.model.in_unit(0))
+
+
 def _shapes(identifier: str, scales: Scales) -> list[dict[str, float]]:
     """Return shapes of a term to start from, of which a fit may change every parameter."""
     term = TERMS[identifier]
@@ -184,8 +204,8 @@ def prepare_baseline(
     assessor = assessor_of(free_rows)
     if isinstance(model, str):
         found = fit_terms(assessor, term_ids(model))
-        whole = found.model.in_unit(0)
-        composite = Composite.of(whole, held=fixed)
+        whole = _predicting(assessor, found)
+        composite = Composite.of(whole, held=True) if fixed else found.model
         return Baseline(rows, assessor, composite, whole, fitted=True, fixed=fixed)
     added = model.added if isinstance(model, SegmentedModel) else ()
     if isinstance(model, SegmentedModel) and len(model.bands) == 1:
@@ -200,7 +220,9 @@ def prepare_baseline(
 
 
 def _fitted(rows: Sequence[RecordRows]) -> ForceModel:
-    return fit_terms(assessor_of(rows), FOIM_TERMS).model.in_unit(0)
+    assessor = assessor_of(rows)
+    found = fit_terms(assessor, FOIM_TERMS)
+    return _predicting(assessor, found)
 
 
 def _by_bands(

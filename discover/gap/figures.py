@@ -8,6 +8,7 @@ import numpy as np
 
 from discover.figure_data import EffectShape, GapCurves
 from discover.gap.result import NamedEffect
+from discover.motion_fit import Observation
 from discover.rows import Accuracy, RecordRows, force_at_samples
 from discover.shown_samples import shown_samples
 from models.checks import Array
@@ -58,6 +59,7 @@ def shape_of(
         Its index.
     """
     best, added, rest = rows[0], np.zeros(0), np.zeros(0)
+    seen: list[tuple[dict[str, Array], Array]] = []
     most = -1.0
     for r, model in zip(rows, models, strict=True):
         if r.observation.held_out:
@@ -65,19 +67,14 @@ def shape_of(
         without = ForceModel(tuple(t for t in model.terms if t.id != named.effect))
         lacking = force_at_samples(r.observation, without)
         change = force_at_samples(r.observation, model) - lacking
+        seen.append((_sources(r.observation), change))
         size = float(np.std(change)) / max(float(np.std(r.observation.measured)), 1e-300)
         if size > most:
             most, best, added, rest = size, r, change, lacking
     o = best.observation
-    sources = {
-        "velocity": o.at_samples(o.motion.velocity),
-        "displacement": o.at_samples(o.motion.displacement),
-        "acceleration": o.at_samples(o.motion.acceleration),
-        "time": o.time - o.time[0],
-    }
     fitted = FittedTerm(named.effect, named.coefficient, named.parameters)
-    abscissa = _followed(fitted, sources, added)
-    along = sources[abscissa]
+    abscissa = _followed(fitted, seen)
+    along = _sources(o)[abscissa]
     stop = along.size
     if o.kind == "sine" and abscissa != "time":
         step = float((o.time[-1] - o.time[0]) / (o.time.size - 1))
@@ -96,13 +93,30 @@ def shape_of(
     )
 
 
-def _followed(fitted: FittedTerm, sources: Mapping[str, Array], force: Array) -> str:
-    """Return what an effect is best drawn over: that along which its force varies least."""
+def _sources(observation: Observation) -> dict[str, Array]:
+    """Return what a force may be drawn over, at the usable samples, SI."""
+    motion = observation.motion
+    return {
+        "velocity": observation.at_samples(motion.velocity),
+        "displacement": observation.at_samples(motion.displacement),
+        "acceleration": observation.at_samples(motion.acceleration),
+        "time": observation.time - observation.time[0],
+    }
+
+
+def _followed(fitted: FittedTerm, seen: Sequence[tuple[Mapping[str, Array], Array]]) -> str:
+    """Return what an effect is best drawn over: that along which its force varies least.
+
+    In all records together: in one sine test displacement and acceleration are alike.
+    """
     follows = TERMS[fitted.id].remembers(fitted.shape)
     if follows != "motion":
         return "time" if follows == "time" else "displacement"
 
+    force = np.concatenate([change for _, change in seen])
+
     def variation(name: str) -> float:
-        return float(np.abs(np.diff(force[np.argsort(sources[name], kind="stable")])).sum())
+        along = np.concatenate([sources[name] for sources, _ in seen])
+        return float(np.abs(np.diff(force[np.argsort(along, kind="stable")])).sum())
 
     return min(("velocity", "displacement", "acceleration"), key=variation)

@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.gap.baseline import Baseline
+from discover.gap.baseline import Baseline, few_curves
 from discover.posterior.assess import Assessed
 from discover.posterior.grow import Candidate, Step, grown
 from discover.posterior.left_out import left_out
-from discover.posterior.reversal import reversal_of
 from discover.rows import Accuracy, accuracy, pooled_percent
 from models.constitutive import FittedTerm, ForceModel
 
@@ -95,7 +94,9 @@ def stage(baseline: Baseline, assessed: Assessed) -> Stage:
     """Return what an assessed model makes of every record."""
     best = assessed if baseline.fixed else baseline.assessor.predicting(assessed)
     own = tuple(p.fitted for p in best.model.terms if not p.held)
-    models = baseline.with_terms(_few_curves(baseline, assessed, best, own))
+    if not baseline.fixed:
+        own = few_curves(baseline.assessor, assessed, best, ForceModel(own)).terms
+    models = baseline.with_terms(own)
     accuracies = tuple(
         accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
     )
@@ -103,20 +104,6 @@ def stage(baseline: Baseline, assessed: Assessed) -> Stage:
     return Stage(
         assessed, best, tuple(models), accuracies, held or _left_out(baseline, best, accuracies)
     )
-
-
-def _few_curves(
-    baseline: Baseline, assessed: Assessed, best: Assessed, terms: Sequence[FittedTerm]
-) -> tuple[FittedTerm, ...]:
-    """Return a model's terms, friction by the few curves that make the one that was found."""
-    if baseline.fixed:
-        return tuple(terms)
-    found = reversal_of(baseline.assessor, assessed, best)
-    if found is None:
-        return tuple(terms)
-    name = found.terms[0].id
-    place = next(i for i, t in enumerate(terms) if t.id == name)
-    return (*terms[:place], *found.terms, *terms[place + 1 :])
 
 
 def _left_out(
@@ -165,12 +152,13 @@ def search(
     while len(rounds) < most:
         there = {p.fitted.id for p in here.assessed.model.terms if not p.held}
         open_ids = [e for e in effects if e not in there]
-        last = grown(assessor, here.assessed, open_ids)
-        added, rejected = _accepted(baseline, here, last)
-        if added is None:
+        last, refused = _accepted(baseline, here, grown(assessor, here.assessed, open_ids))
+        rejected = refused[0] if refused else None
+        added = last.best
+        if not added.id or added.assessed is None:
             break
         after, dropped = _without_superfluous(baseline, rounds, added)
-        effect = last.candidates[0].id if rejected is None else added.id
+        effect = added.id
         rounds.append(Round(effect, last, here, after, dropped))
         here = after
         if tell is not None:
@@ -190,20 +178,17 @@ def _given(baseline: Baseline) -> Stage:
     return Stage(assessed, assessed, tuple(models), accuracies, held or accuracies)
 
 
-def _accepted(
-    baseline: Baseline, here: Stage, step: Step
-) -> tuple[Candidate | None, str | None]:
-    """Return the most probable candidate that predicts what is not fitted better."""
-    rejected = None
+def _accepted(baseline: Baseline, here: Stage, step: Step) -> tuple[Step, tuple[str, ...]]:
+    """Return a step without what is more probable but predicts what is not fitted worse."""
+    refused: list[str] = []
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
-            return None, rejected
-        after = stage(baseline, candidate.assessed)
-        was, now = here.unseen_gap, after.unseen_gap
+            break
+        was, now = here.unseen_gap, stage(baseline, candidate.assessed).unseen_gap
         if was is None or now is None or now < was:
-            return candidate, rejected
-        rejected = rejected or candidate.id
-    return None, rejected
+            break
+        refused.append(candidate.id)
+    return step.without(refused), tuple(refused)
 
 
 def _without_superfluous(

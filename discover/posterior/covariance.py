@@ -111,12 +111,12 @@ class Given:
     @property
     def functions(self) -> int:
         """F, the number of the remainder's functions."""
-        return self.products.sheet.remainder.shape[1]
+        return int(self.products.sheet.remainder.shape[1])
 
     @property
     def force(self) -> int:
         """Place of the measured force among the columns."""
-        return self.products.columns.shape[1] - 1
+        return int(self.products.columns.shape[1]) - 1
 
     def gram(self, groups: Sequence[Group]) -> Array:
         """Return products of groups of columns, one after the other."""
@@ -209,7 +209,8 @@ def given(products: Products, sizes: Sizes) -> Given:
     inner = np.linalg.cholesky(
         np.eye(nuisance) + spread[:, None] * gram[:, :nuisance, :nuisance] * spread
     )
-    taken = np.linalg.solve(inner, spread[:, None] * gram[:, :nuisance])
+    pulled = spread[:, None] * gram[:, :nuisance]
+    taken = np.asarray(np.linalg.solve(inner, pulled), dtype=float)
     seen = np.r_[np.arange(functions), np.arange(nuisance, gram.shape[1])]
     some = taken[:, :, seen]
     left = gram[:, seen[:, None], seen] - some.transpose(0, 2, 1) @ some

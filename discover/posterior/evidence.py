@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import log_ndtr
 
-from models.checks import Array
+from models.checks import Array, Indices
 
 _LOG_2 = float(np.log(2.0))
 _LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))
@@ -84,7 +84,7 @@ def _allowed(mean: Array, covariance: Array, sign: Array) -> Array:
     return result
 
 
-def without(gram: Array, taken: Array, spread: Array) -> tuple[Array, float]:
+def without(gram: Array, taken: Indices, spread: Array) -> tuple[Array, float]:
     """Return products with columns marginalised, and what that adds to the log density.
 
     Parameters

@@ -49,6 +49,10 @@ class Step:
         """The most probable."""
         return self.candidates[0]
 
+    def without(self, ids: Collection[str]) -> Step:
+        """Return the step without some candidates, refused as they do not predict."""
+        return Step(tuple(c for c in self.candidates if c.id not in ids))
+
     @property
     def probabilities(self) -> dict[str, float]:
         """Of every id, and of "" for the model as it is."""
@@ -104,10 +108,10 @@ def _tried(
     ranked = sorted(best.values(), key=lambda g: -g[0].value)
     most = ranked[0][0].value
     found: list[Candidate] = []
-    for place, one in enumerate(ranked):
+    for rank, one in enumerate(ranked):
         value = one[0].value
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
-        if place >= _NAMES or value < max(_HOPELESS, near * most - _NATS):
+        if rank >= _NAMES or value < max(_HOPELESS, near * most - _NATS):
             found.append(Candidate(one[0].trial.id, now.value + min(value, 0.0), None))
         else:
             found.append(_fitted(assessor, now, one))
@@ -129,7 +133,8 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
         terms = _begun(gain)
         model = now.model.plus(*terms)
         steps = 3 if len(chosen) > 1 else 12
-        begun.append((assessor.assess(model, now.place.towards(assessor.space.quiet), iterations=steps), gain))
+        place = now.place.towards(assessor.space.quiet)
+        begun.append((assessor.assess(model, place, iterations=steps), gain))
     begun.sort(key=lambda b: -(b[0].value + b[1].trial.log_prior))
     first, gain = begun[0]
     first = assessor.assess(first.model, first.place)

@@ -24,7 +24,7 @@ def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
 
     Returns
     -------
-    fitted, predicted : ndarray, shape (records,)
+    fitted, predicted : ndarray, shape (records,), or (parts,) of one record
         Mean square of what is left over that of the record's force. The remainder that records
         share is not used to predict.
     """
@@ -40,26 +40,27 @@ def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
     records = np.array([u.record for u in space.sheet.units])
     parts = records if records.max() > 0 else np.arange(records.size)
     total = gram.sum(axis=0)
-    found = np.zeros((2, len(space.sheet.rows)))
+    found = np.zeros((2, parts.max() + 1))
     for part in range(parts.max() + 1):
         inside = parts == part
         own = total - gram[inside].sum(axis=0)
-        record = records[inside][0]
         for place, some in enumerate((total, own)):
             values = np.linalg.solve(some[:-1, :-1] + prior, some[:-1, -1])
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
-            found[place, record] += _relative(assessor, np.flatnonzero(inside), left)
+            found[place, part] = _relative(assessor, np.flatnonzero(inside), left)
     return found[0], found[1]
 
 
 def predicts_better(assessor: Assessor, was: Assessed, now: Assessed) -> bool:
-    """Tell whether a model predicts records that are left out better than another one."""
+    """Tell whether a model predicts records that are left out better than another one.
+
+    By more than the standard error of the mean over records; a lone part can't tell.
+    """
     if len(assessor.space.sheet.units) < _FEWEST:
         return True
-    before, after = (
-        float(np.mean(left_out(assessor, assessor.predicting(a))[1])) for a in (was, now)
-    )
-    return after < before
+    before, after = (left_out(assessor, assessor.predicting(a))[1] for a in (was, now))
+    gained = before - after
+    return bool(np.mean(gained) > np.std(gained, ddof=1) / np.sqrt(gained.size))
 
 
 def _relative(assessor: Assessor, units: Indices, left: Array) -> float:

@@ -50,7 +50,7 @@ class Local:
 
     def target(self, measured: Array) -> Array:
         """Return what the slopes times the numbers shall make (U, R) of a measured force."""
-        return measured - self.force + np.einsum("p,upr->ur", self.values, self.slopes)
+        return np.asarray(measured - self.force + np.einsum("p,upr->ur", self.values, self.slopes))
 
 
 @dataclass(frozen=True)

@@ -80,4 +80,4 @@ def _factored(inner: Array, outer: Array, spread: Array) -> tuple[Array, Array]:
     """Return the factor of one and the curve's products, and the share that it takes of others."""
     whole = np.eye(spread.size) + spread[:, None] * inner * spread
     factor = np.linalg.cholesky(whole)
-    return factor, np.linalg.solve(factor, spread[:, None] * outer)
+    return np.asarray(factor, dtype=float), np.linalg.solve(factor, spread[:, None] * outer)

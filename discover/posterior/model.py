@@ -97,7 +97,8 @@ class Composite:
             share = 1.0 if placed.share is None else placed.share[unit]
             if share > 0.0:
                 t = placed.fitted
-                terms.append(FittedTerm(t.id, share * t.coefficient, t.shape))
+                scaled = t if share == 1.0 else FittedTerm(t.id, share * t.coefficient, t.shape)
+                terms.append(scaled)
         return ForceModel(tuple(terms))
 
     def in_test(self, test: int) -> Composite:

@@ -1,4 +1,4 @@
-"""Friction's curve as it was found: which curves make it, and over what length or speed it turns."""
+"""Friction's curve as it was found: which curves make it, over what length or speed it turns."""
 
 from __future__ import annotations
 

@@ -170,12 +170,11 @@ def _units(rows: RecordRows, place: int) -> list[Unit]:
         )
         share = np.array([windows[i].share for i in group])
         share = share / share.sum()
-        mean = {
-            name: float(np.exp(share @ np.log([max(getattr(windows[i], name), 1e-12)
-                                               for i in group])))
+        frequency, amplitude, speed = (
+            float(np.exp(share @ np.log([max(getattr(windows[i], name), 1e-12) for i in group])))
             for name in ("frequency", "amplitude", "speed")
-        }
-        found.append(Unit(place, part, **mean))
+        )
+        found.append(Unit(place, part, frequency, amplitude, speed))
     return found
 
 

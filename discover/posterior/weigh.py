@@ -98,14 +98,15 @@ def gains(
         low, high = entry.terms[0].term.coefficient_bounds(entry.terms[0].shape)
         sign[entry.places] = float(low >= 0.0) - float(high <= 0.0)
         size[entry.places] = np.minimum(size[entry.places], max(-low, high))
-    value, mean = _single(np.diagonal(gram), side, size, sign)
+    single, mean = _single(np.diagonal(gram), side, size, sign)
     found = []
     for entry in trials.entries:
-        at = entry.places
-        if at.size == 1:
-            one, many = float(value[at[0]]), (float(mean[at[0]]),)
+        own = entry.places
+        many: tuple[float, ...]
+        if own.size == 1:
+            one, many = float(single[own[0]]), (float(mean[own[0]]),)
         else:
-            one, many = _several(gram[np.ix_(at, at)], side[at], size[at])
+            one, many = _several(gram[np.ix_(own, own)], side[own], size[own])
         found.append(Gain(entry, one + entry.log_prior, many))
     return sorted(found, key=lambda g: -g.value)
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from discover.motion_fit import Observation, Window, real_rows
+from discover.motion_fit import Lines, Observation, Window, real_rows
 from discover.rows.record_rows import RecordRows
 from models.checks import Array
 
@@ -98,7 +98,7 @@ def _local(windows: tuple[Window, ...]) -> Array:
     return np.concatenate(found)
 
 
-def _hats(windows: tuple[Window, ...], responses: list[Array]) -> list[Array]:
+def _hats(windows: tuple[Window, ...], responses: list[Lines]) -> list[Array]:
     """Return hat functions (H, L) of the logarithm of frequency, from where motion begins."""
     omega = np.concatenate([w.omega for w in windows])
     moving = np.concatenate([np.abs(r) ** 2 for r in responses])

@@ -160,7 +160,8 @@ def force_at_samples(observation: Observation, model: ForceModel) -> Array:
     if observation.cycle is None:
         motion = replace(observation.motion, test=observation.test)
         return observation.at_samples(model.force(motion))
-    numbered = {"test": observation.test, "sampling": observation.motion.step}
-    cycle = replace(observation.cycle_of(POINTS), **numbered)
+    test, sampling = observation.test, observation.motion.step
+    cycle = replace(observation.cycle_of(POINTS), test=test, sampling=sampling)
+    motion = replace(observation.motion, test=test, sampling=sampling)
     whole = at_moments(steady(model).force(cycle), observation.time, observation.frequency)
-    return whole + _drifting(model, replace(observation.motion, **numbered), whole)
+    return whole + _drifting(model, motion, whole)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.sparse import csr_array
 
@@ -41,8 +42,8 @@ def sine_rows(observation: Observation) -> RecordRows:
         With the mean, up to 31 harmonics, and from three cycles on the slow changes.
     """
     window, frequency = observation.windows[0], observation.frequency
-    numbered = {"test": observation.test, "sampling": observation.motion.step}
-    cycle = replace(observation.cycle_of(POINTS), **numbered)
+    test, sampling = observation.test, observation.motion.step
+    cycle = replace(observation.cycle_of(POINTS), test=test, sampling=sampling)
     moments, cells = _cells(observation)
     counts = np.asarray(cells.sum(axis=0)).ravel()
     force = (observation.measured @ cells) / counts
@@ -63,7 +64,7 @@ def sine_rows(observation: Observation) -> RecordRows:
     phase = float(np.angle(_fundamental(observation.cycle_of(POINTS)))) + 0.5 * np.pi
     return RecordRows(
         observation=observation,
-        motion=replace(_motion(observation, moments), **numbered),
+        motion=replace(_motion(observation, moments), test=test, sampling=sampling),
         cycle=cycle,
         target=of_motion(force),
         size=size,
@@ -156,18 +157,18 @@ def _variance(
     if observation.noise is None:
         variance = samples * window.variance[np.minimum(order, count)] + floor
     else:
-        wanted = order * frequency
+        wanted = order.astype(float) * frequency
         wanted[0] = _MEAN_AT / duration
         drift = (order == 0) & (changes > 0.0)
         wanted[drift] = 0.5 * changes[drift] / duration
         variance = 0.5 * observation.noise.at(wanted) * samples / duration + floor
     variance = np.where((changes > 0.0) | (order == 0), _SLOW_DOUBT * variance, variance)
     step = observation.motion.step
-    hum = _hum(order * frequency, 2.0 / duration, 1.0 / step) & (order > 2)
+    hum = _hum(order.astype(float) * frequency, 2.0 / duration, 1.0 / step) & (order > 2)
     return np.where(hum, _HUM * variance, variance)
 
 
-def _hum(frequencies: Array, width: float, rate: float) -> Array:
+def _hum(frequencies: Array, width: float, rate: float) -> NDArray[np.bool_]:
     """Return which lines (Hz) lie on a low multiple of the mains, folded at the sampling rate."""
     multiples = np.array([m * k for m in _MAINS for k in (1, 2, 3)])
     multiples = np.abs(multiples - rate * np.round(multiples / rate))

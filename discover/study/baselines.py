@@ -61,7 +61,20 @@ class _Candidates:
     """Length of the target before."""
 
 
-def _label(fitted: FittedTerm) -> str:
+def candidate_terms(friction: Sequence[FittedTerm]) -> list[FittedTerm]:
+    """Return the terms among which each method chooses, with friction's curves as they are given.
+
+    Those that are another term's, as order 1 is viscous damping, come after it.
+    """
+    terms = [FittedTerm(i, 1.0) for i in _PLAIN]
+    terms += [FittedTerm(t.id, 1.0, t.shape) for t in friction]
+    terms += [FittedTerm("fractional-derivative", 1.0, {"order": float(a)}) for a in ORDER_GRID]
+    terms += [FittedTerm("power-law-damping", 1.0, {"exponent": float(p)}) for p in EXPONENT_GRID]
+    return terms
+
+
+def label(fitted: FittedTerm) -> str:
+    """Return a term's name in answers: its id and shape."""
     shape = ", ".join(f"{value:.3g}" for value in fitted.shape.values() if value)
     return f"{fitted.id} ({shape})" if shape else fitted.id
 
@@ -86,7 +99,7 @@ def _candidates(rows: Sequence[RecordRows], terms: Sequence[FittedTerm]) -> _Can
             units.append(unit)
     size = float(np.linalg.norm(target))
     return _Candidates(
-        tuple(_label(terms[i]) for i in kept),
+        tuple(label(terms[i]) for i in kept),
         np.array(units).T if units else np.empty((target.size, 0)),
         np.array([1.0 / lengths[i] for i in kept]) * size,
         target / (size or 1.0),
@@ -191,9 +204,5 @@ def baseline_answers(
         One for each method, with SI coefficients of plain least squares on its support. A method
         that finds no model or fails has no terms and no error; nothing is raised or warned.
     """
-    terms = [FittedTerm(i, 1.0) for i in _PLAIN]
-    terms += [FittedTerm(t.id, 1.0, t.shape) for t in friction]
-    terms += [FittedTerm("fractional-derivative", 1.0, {"order": float(a)}) for a in ORDER_GRID]
-    terms += [FittedTerm("power-law-damping", 1.0, {"exponent": float(p)}) for p in EXPONENT_GRID]
-    candidates = _candidates(rows, terms)
-    return tuple(_answer(name, search, candidates, band) for name, search in _METHODS)
+    unit = _candidates(rows, candidate_terms(friction))
+    return tuple(_answer(name, search, unit, band) for name, search in _METHODS)

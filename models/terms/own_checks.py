@@ -37,7 +37,8 @@ def check_fields(term: Term, *, where: str) -> None:
         if not isinstance(text := getattr(term, name), str):
             raise InputError(f"{name} of TERM", expected="text", found=repr(text), where=where)
     one_of("acts of TERM", term.acts, ("force", "input", "output"), where=where)
-    one_of("follows of TERM", term.follows, ("motion", "path", "time"), where=where)
+    if not callable(term.follows):
+        one_of("follows of TERM", term.follows, ("motion", "path", "time"), where=where)
     wanted, other = ("column", "transform") if term.acts == "force" else ("transform", "column")
     if not callable(getattr(term, wanted)) or getattr(term, other) is not None:
         given = [n for n in ("column", "transform") if getattr(term, n) is not None]

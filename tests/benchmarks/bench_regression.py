@@ -1,4 +1,4 @@
-"""Sparse regression side by side, in one run: rows against triangle, exact search against others.
+"""Sparse regression side by side: rows against their triangle, exact search against others.
 
 ``python -m tests.benchmarks.bench_regression`` prints the rows; `rows` returns them.
 """
@@ -13,19 +13,20 @@ import numpy as np
 from pysindy.optimizers import STLSQ
 from sklearn.linear_model import OrthogonalMatchingPursuit
 
-from discover.library.dictionary import PLAIN, Column, Dictionary, standard_dictionary
-from discover.regression import BestSubset, baseline_answers, best_subsets
+from discover.motion_fit import observe_all
+from discover.regression import BestSubset, best_subsets
 from discover.regression.best_subset import compress
-from discover.triangle import Triangle, reduce_rows
+from discover.rows import RecordRows, record_rows
+from discover.rows.columns import force_columns
+from discover.study.baselines import baseline_answers, candidate_terms, label
+from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
-from models.motion import sine_motion
-
-Row = tuple[str, float, str, str]
-"""What was measured, value, unit, beside what."""
+from models.motion import Motion
+from tests.benchmarks.bench_study import Row, sine_records
 
 _SEEDS = 20
-_ORDERS = np.linspace(0.0, 2.0, 21)
-_EXPONENTS = np.array([0.5, 0.75, 1.25, 1.5, 1.75, 2.5])
+_SAMPLES = 400
+"""Of each test, over four cycles."""
 
 
 def timed(work: Callable[[], object], repeats: int = 3) -> float:
@@ -118,35 +119,36 @@ def search_against_brute_force() -> Iterator[Row]:
     )
 
 
-def _problem(
-    model: ForceModel, noise: float, seed: int
-) -> tuple[Triangle, Dictionary, np.ndarray, list[str]]:
-    """Return triangle and dictionary of 36 sine tests, and the grid's columns with labels."""
-    rng = np.random.default_rng(seed)
-    plan = [(f, a) for f in np.geomspace(0.1, 15.0, 12) for a in (0.005, 0.01, 0.02)]
-    frequencies, amplitudes = np.array(plan).T
-    omegas = 2.0 * np.pi * frequencies
-    standard = standard_dictionary(omegas * amplitudes, omegas, delay=False)
-    fixed = (*(Column(t) for t in PLAIN), Column("coulomb-friction", (("transition_speed", 0.0),)))
-    dictionary = Dictionary(fixed, standard.families, delay=False)
-    blocks = []
-    for frequency, amplitude in plan:
-        motion = sine_motion(amplitude, frequency, samples=128)
-        force = model.force(motion)
-        size = np.sqrt(np.mean(force**2))
-        force = force + noise * size * rng.normal(size=force.size)
-        blocks.append(np.vstack([dictionary.evaluate(motion), force]).T / size)
-    rows = np.concatenate(blocks)
-    triangle = Triangle(reduce_rows(rows), len(rows), 0.0)
-    labels = [c.id for c in fixed]
-    columns = [triangle.columns[:, i] for i in range(len(fixed))]
-    grids = {"order": _ORDERS[[q not in (0.0, 1.0, 2.0) for q in _ORDERS]], "exponent": _EXPONENTS}
-    for family in dictionary.families:
-        _, where = dictionary.family(family.id)
-        values = grids[family.parameter]
-        columns.extend((triangle.columns[:, where] @ family.weights(values)).T)
-        labels.extend(f"{family.id} {value:.4g}" for value in values)
-    return triangle, dictionary, np.array(columns).T, labels
+def _problem(model: ForceModel, noise: float, seed: int) -> list[RecordRows]:
+    """Return the rows of 33 sine tests of a model."""
+
+    def law(omega: float, angle: Array, x: Array, v: Array) -> Array:
+        return model.force(_steady(angle, omega, float(np.hypot(x, v / omega).max())))
+
+    plan = [(a, f) for f in np.geomspace(0.1, 15.0, 12) for a in (0.005, 0.01, 0.02)]
+    records = sine_records(
+        law, plan, _SAMPLES, cycles=4.0, noise=noise, displacement_noise=1e-7, seed=seed
+    )
+    return [record_rows(o) for o in observe_all(records, 1)]
+
+
+def _steady(angle: Array, omega: float, amplitude: float) -> Motion:
+    """Return the motion A sin(angle) with its derivatives, (N,)."""
+
+    def differentiate(orders: Array) -> Array:
+        turned = angle + 0.5 * np.pi * orders[:, None]
+        return np.asarray(amplitude * omega ** orders[:, None] * np.sin(turned))
+
+    x, v, a = differentiate(np.array([0.0, 1.0, 2.0]))
+    return Motion(angle / omega, x, v, a, differentiate, "weyl")
+
+
+def _columns(rows: list[RecordRows], terms: list[FittedTerm]) -> tuple[np.ndarray, np.ndarray]:
+    """Return columns of terms and the measured force, each record over its own force."""
+    sizes = [float(np.linalg.norm(r.target)) for r in rows]
+    blocks = [force_columns(r, terms) / s for r, s in zip(rows, sizes, strict=True)]
+    force = np.concatenate([r.target / s for r, s in zip(rows, sizes, strict=True)])
+    return np.concatenate(blocks, axis=1).T, force
 
 
 def _pursuit(columns: np.ndarray, force: np.ndarray, rows: int) -> np.ndarray:
@@ -161,7 +163,7 @@ def _pursuit(columns: np.ndarray, force: np.ndarray, rows: int) -> np.ndarray:
 
 
 def exact_support() -> Iterator[Row]:
-    """Yield how often each method finds exactly the true terms, in twenty seeds."""
+    """Yield how often each method finds exactly the true terms."""
     friction = FittedTerm("coulomb-friction", 400.0)
     inertia, viscous = FittedTerm("inertia", 370.0), FittedTerm("viscous-damping", 2000.0)
     models = {
@@ -170,29 +172,29 @@ def exact_support() -> Iterator[Row]:
         "IOIM-laminar": (inertia, viscous, FittedTerm("quadratic-damping", 3e4), friction),
     }
     for name, terms in models.items():
-        model = ForceModel(terms)
-        truth = {t.id + "".join(f" {t.shape[k]:.4g}" for k in t.shape if k == "order")
-                 for t in terms}
         for noise in (0.02, 0.1):
             hits: dict[str, int] = {}
             for seed in range(_SEEDS):
-                triangle, dictionary, columns, labels = _problem(model, noise, seed)
-                samples = float(triangle.rows)
-                # All methods are judged by the same criterion.
-                subset = BestSubset(max_terms=5, criterion="bic", effective_samples=samples)
-                chosen = {"best subset": subset.fit(columns, triangle.target).coef_[0]}
-                chosen["scikit-learn OMP"] = _pursuit(columns, triangle.target, triangle.rows)
-                answers = {m: {labels[i] for i in np.flatnonzero(c)} for m, c in chosen.items()}
-                for answer in baseline_answers(
-                    triangle, dictionary, order_grid=_ORDERS, exponent_grid=_EXPONENTS
-                ):
-                    answers[f"pysindy {answer.method}"] = {label for label, _ in answer.terms}
+                answers = _answers(_problem(ForceModel(terms), noise, seed), friction)
                 for method, found in answers.items():
-                    hits[method] = hits.get(method, 0) + (found == truth)
+                    hits[method] = hits.get(method, 0) + (found == {label(t) for t in terms})
             for method, count in hits.items():
                 yield f"exact terms, {name}, {noise:.0%} noise: {method}", count, (
                     f"of {_SEEDS}"
                 ), ""
+
+
+def _answers(rows: list[RecordRows], friction: FittedTerm) -> dict[str, set[str]]:
+    """Return the terms that each method chooses on the same columns, by the same criterion."""
+    terms = candidate_terms([friction])
+    columns, force = _columns(rows, terms)
+    subset = BestSubset(max_terms=5, criterion="bic", effective_samples=float(force.size))
+    chosen = {"best subset": subset.fit(columns, force).coef_[0]}
+    chosen["scikit-learn OMP"] = _pursuit(columns, force, force.size)
+    answers = {m: {label(terms[i]) for i in np.flatnonzero(c)} for m, c in chosen.items()}
+    for answer in baseline_answers(rows, [friction]):
+        answers[f"pysindy {answer.method}"] = {name for name, _ in answer.terms}
+    return answers
 
 
 def rows() -> list[Row]:

@@ -11,10 +11,10 @@ from itertools import product
 
 import numpy as np
 
+from discover.bands.extras import found
 from discover.records import Campaign, Record
 from discover.study import StudyOptions, run_study
-from discover.study.bands import find_bands
-from discover.study.preparation import prepare
+from discover.study.prepare import prepare
 from models.checks import Array
 from models.device import Device
 
@@ -68,17 +68,17 @@ def campaign(samples: int) -> Campaign:
 
 
 def measured(samples: int) -> tuple[float, float, float]:
-    """Return the least times of compression, of the search on triangles and of the whole, s."""
+    """Return the least times of compression, of the search on rows and of the whole, s."""
     tests, options = campaign(samples), StudyOptions()
     times = np.empty((_REPEATS, 3))
     for row in times:
         begin = time.perf_counter()
         prepared = prepare(tests, options)
         compressed = time.perf_counter()
-        find_bands(prepared, tests.device, options)
-        found = time.perf_counter()
+        found(prepared.device)
+        searched = time.perf_counter()
         run_study(tests, options)
-        row[:] = compressed - begin, found - compressed, time.perf_counter() - found
+        row[:] = compressed - begin, searched - compressed, time.perf_counter() - searched
     return tuple(times.min(axis=0).tolist())
 
 
@@ -90,10 +90,10 @@ def rows() -> Iterator[Row]:
         compression, search[samples], whole = measured(samples)
         name = f"40 records of {samples:,} samples"
         rate = 1e-6 * 40 * samples / compression
-        yield f"{name}: compression to triangles", compression, "s", f"{rate:.2g} million samples/s"
+        yield f"{name}: compression to rows", compression, "s", f"{rate:.2g} million samples/s"
         yield f"{name}: search for bands and structures, after it", search[samples], "s", ""
         rest = whole - compression - search[samples]
-        yield f"{name}: prediction, baselines, next test, figures' data", rest, "s", ""
+        yield f"{name}: intervals, accuracy, next test", rest, "s", ""
         yield f"{name}: run_study in all", whole, "s", "one process"
     few, many = _SIZES
     ratio = search[many] / search[few]

@@ -219,7 +219,7 @@ def test_an_error_comes_with_what_reading_warned_of(
 ) -> None:
     from models.checks import InputError
 
-    def refuse(*_: object) -> None:
+    def refuse(*_: object, **__: object) -> None:
         raise InputError("displacement", expected="motion", found="noise", where="a.csv")
 
     x, force = _test(2.0)

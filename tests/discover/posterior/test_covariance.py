@@ -15,11 +15,11 @@ from models.terms import TERMS
 from tests.discover.posterior.small import APART, dense, flat, log_density, rows_of
 
 SIZES = {
-    "noise": Sizes(0.0, (0.0,), 0.0),
-    "loud": Sizes(0.0, (0.03,), 0.0),
-    "remainder": Sizes(0.1, (0.0,), 0.0),
-    "own friction": Sizes(0.0, (0.0,), 8.0),
-    "all": Sizes(0.05, (0.01,), 5.0),
+    "noise": Sizes(0.0, (0.0, 0.0), 0.0),
+    "loud": Sizes(0.0, (0.03, 0.0), 0.0),
+    "remainder": Sizes(0.1, (0.0, 0.0), 0.0),
+    "own friction": Sizes(0.0, (0.0, 0.0), 8.0),
+    "all": Sizes(0.05, (0.01, 0.002), 5.0),
 }
 
 
@@ -128,7 +128,7 @@ def test_the_curve_s_coefficients_are_those_of_a_ridge(problem):
 def windows(seed=0):
     """Return a record of random motion, longer than a unit's rows may be."""
     rng = np.random.default_rng(seed)
-    time = np.arange(6000) / 200.0
+    time = np.arange(12000) / 200.0
     tones = 2.0 * np.pi * rng.uniform(0.3, 8.0, 60)
     turned = np.outer(time, tones) + rng.uniform(0.0, 6.0, 60)
     size = 1e-3 * np.minimum(1.0, 3.0 / tones)

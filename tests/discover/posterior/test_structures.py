@@ -23,7 +23,7 @@ from models.terms import TERMS
 from tests.discover.posterior.small import dense, flat, log_density, rows_of
 
 PLAN = ((0.5, 0.012), (1.0, 0.004), (2.0, 0.02), (3.0, 0.003), (5.0, 0.006), (8.0, 0.001))
-SIZES = Sizes(0.02, (0.005,), 2.0)
+SIZES = Sizes(0.02, (0.005, 0.0), 2.0)
 SHARES = np.array(
     [
         [[1, 1, 0, 0, 0, 0], [0, 0, 1, 1, 1, 1]],

@@ -28,6 +28,17 @@ def transform(force_of, motion, coefficient, shape):
     return (1.0 + coefficient) * force_of(motion)
 TERM = Term("my-gain", "1", "g F", transform=transform, acts="output")
 '''
+WARMED = '''
+import numpy as np
+from models.terms import Parameter, Term
+def column(motion, shape):
+    rate = shape["rate"]
+    return np.sign(motion.velocity) * (np.exp(-rate * motion.time) if rate > 0.0 else 1.0)
+def follows(shape):
+    return "time" if shape["rate"] > 0.0 else "motion"
+TERM = Term("warmed", "N", "f sign v exp(-rt)", column, follows=follows,
+            parameters=(Parameter("rate", 0.0, 1.0, 0.5, "1/s"),))
+'''
 PLAIN = '''
 from models.terms import Term, Parameter
 TERM = Term("mine", "N", "f", {})
@@ -55,6 +66,12 @@ def test_a_file_becomes_a_term_with_its_hash(file):
     motion = sine_motion(0.01, 2.0)
     expected = np.abs(motion.velocity) ** 1.5 * motion.displacement
     np.testing.assert_allclose(term.column(motion, {"power": 1.5}), expected, rtol=1e-14)
+
+
+def test_what_a_term_follows_may_depend_on_its_shape(file):
+    term = load_term(file(WARMED))
+    assert term.remembers({"rate": 0.0}) == "motion"
+    assert term.remembers({"rate": 0.2}) == "time"
 
 
 def test_a_term_is_known_inside_the_block_alone(file):
