@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 from discover.cli import signals
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 BAD_INPUT = 2
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -25,6 +27,8 @@ def program() -> int:
     """Run the command as a program of its own: interrupted at any moment, it ends with 130."""
     try:
         signals.begin()
+        for name in _THREADS:  # matrices are small: more threads take longer
+            os.environ.setdefault(name, "1")
         code = BAD_INPUT
         hiding = _hiding()
         if hiding:
