@@ -29,7 +29,7 @@ from discover.rows import RecordRows, force_rows
 from discover.rows.columns import Behind
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
-from models.cores import Core
+from models.cores import Core, family_of
 from models.terms import Term
 
 MOST = 4
@@ -114,7 +114,7 @@ def found(device: Device) -> Found:
         return now
     best = now
     starts = {b.bands: b for b in (now.banded, now.fewer[0])}
-    for start in starts.values():
+    for start in (*starts.values(), _other_family(now)):
         way = replace(now, banded=start)
         for _ in range(MOST):
             more = _with_one_more(device, way)
@@ -130,6 +130,24 @@ def found(device: Device) -> Found:
         if best.banded.quiet:
             break
     return best
+
+
+def _other_family(now: Found) -> Banded:
+    """Return one band with the best structure of the family that the most probable one is not of.
+
+    What a device has besides, a delay say, may be what makes the wrong family more probable.
+    """
+    one = now.fewer[0]
+    family = _family(now.variants[one.variants[0]])
+    others = [
+        -np.inf if _family(v) == family else value
+        for v, value in zip(now.variants, one.by_variant[0], strict=True)
+    ]
+    return replace(one, variants=(int(np.argmax(others)),))
+
+
+def _family(variant: Variant) -> str:
+    return family_of([t.id for p in variant.parts for t in p.terms])
 
 
 def _searched(device: Device, joined: Sequence[Joined], place: Place | None,

@@ -98,23 +98,23 @@ def _tried(
     if not trials.entries:
         return []
     curve = assessor.curve_of(now.model)
-    best: dict[str, list[Gain]] = {}
+    behind: dict[str, list[tuple[float, Gain, float]]] = {}
     for place in dict.fromkeys((now.place, space.quiet)):
-        sizes = place.sizes(space.own_unit)
-        for gain in gains(space, trials, now.local, sizes, curve):
-            best.setdefault(gain.trial.id, []).append(gain)
-    for one in best.values():
-        one.sort(key=lambda g: -g.value)
-    ranked = sorted(best.values(), key=lambda g: -g[0].value)
-    most = ranked[0][0].value
+        weighed = gains(space, trials, now.local, place.sizes(space.own_unit), curve)
+        most = weighed[0].value
+        for gain in weighed:
+            behind.setdefault(gain.trial.id, []).append((most - gain.value, gain, most))
+    for one in behind.values():
+        one.sort(key=lambda entry: entry[0])
     found: list[Candidate] = []
-    for rank, one in enumerate(ranked):
-        value = one[0].value
+    for rank, one in enumerate(sorted(behind.values(), key=lambda own: own[0][0])):
+        gain = one[0][1]
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
-        if rank >= _NAMES or value < max(_HOPELESS, near * most - _NATS):
-            found.append(Candidate(one[0].trial.id, now.value + min(value, 0.0), None))
+        worth = any(g.value >= max(_HOPELESS, near * most - _NATS) for _, g, most in one)
+        if rank >= _NAMES or not worth:
+            found.append(Candidate(gain.trial.id, now.value + min(gain.value, 0.0), None))
         else:
-            found.append(_fitted(assessor, now, one))
+            found.append(_fitted(assessor, now, [g for _, g, _ in one]))
     return found
 
 

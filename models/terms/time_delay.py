@@ -61,7 +61,7 @@ def read_late(force: Array, time: Array, degree: int) -> Late:
 
 def starts(scales: Scales) -> list[Start]:
     """Return a later sample, a low-pass, a number of samples, one value a test."""
-    probe = 0.02 / scales.omega
+    probe = 2e-4 / scales.omega  # so short that the fastest force is late by little
     sampled = [Start.one(probe)]
     if scales.sampling:
         sampled.append(Start.one(probe, sampling=scales.sampling))
