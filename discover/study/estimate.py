@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,8 +12,9 @@ from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.model import Composite, Number
 from discover.posterior.reversal import Reversal, reversal_of
 from discover.posterior.spread import Spread, spread_of
+from discover.study.mixture import Normal, interval_of, normals
 from discover.study.prepare import Prepared
-from discover.study.result import TermEstimate
+from discover.study.result import Interval, TermEstimate
 from models.constitutive import FittedTerm, ForceModel
 
 
@@ -48,6 +49,7 @@ def estimated(prepared: Prepared, found: Found) -> Estimates:
     reversal = reversal_of(assessor, assessed, best) if with_friction else None
     shares = found.banded.shares
     by_band: list[list[TermEstimate]] = [[] for _ in range(found.banded.bands)]
+    mixed = [normals(prepared.device, found, spread, b) for b in range(found.banded.bands)]
     for place, placed in enumerate(best.model.terms):
         whole = reversal is not None and placed.fitted.id == prepared.device.friction.id
         if whole and reversal is not None:
@@ -56,7 +58,7 @@ def estimated(prepared: Prepared, found: Found) -> Estimates:
             own = [_estimate(best.model, spread, place)]
         for band, terms in enumerate(by_band):
             if placed.share is None or np.allclose(placed.share, shares[band]):
-                terms += own
+                terms += [_over_variants(t, mixed[band]) for t in own]
     return Estimates(
         assessor, best, spread, reversal, tuple(tuple(terms) for terms in by_band)
     )
@@ -73,11 +75,36 @@ def _estimate(model: Composite, spread: Spread, place: int) -> TermEstimate:
     for p in fitted.term.parameters:
         own = _place(spread, Number(place, p.name))
         if own is not None:
-            upper = p.upper if not p.scaled_by else np.inf
-            shapes[p.name] = spread.interval(own, p.lower if not p.scaled_by else 0.0, upper)
+            shapes[p.name] = spread.interval(own, *_bounds(fitted, p.name))
     return TermEstimate(
         fitted, float(spread.deviation[at]), spread.interval(at, low, high), shapes
     )
+
+
+def _over_variants(
+    term: TermEstimate, known: Mapping[tuple[str, str | None], Sequence[Normal]]
+) -> TermEstimate:
+    """Return a term whose intervals hold what other sets of its structure's terms would give."""
+
+    def interval(name: str | None, alone: Interval) -> Interval:
+        parts = known.get((term.fitted.id, name), ())
+        if len(parts) < 2:
+            return alone
+        low, high = _bounds(term.fitted, name)
+        return interval_of(parts, low, high)
+
+    return replace(
+        term,
+        interval=interval(None, term.interval),
+        shape_intervals={n: interval(n, i) for n, i in term.shape_intervals.items()},
+    )
+
+
+def _bounds(fitted: FittedTerm, name: str | None) -> Interval:
+    if name is None:
+        return fitted.term.coefficient_bounds(fitted.shape)
+    p = next(p for p in fitted.term.parameters if p.name == name)
+    return (0.0, np.inf) if p.scaled_by else (p.lower, p.upper)
 
 
 def _place(spread: Spread, number: Number) -> int | None:

@@ -54,7 +54,7 @@ def bristle_state(motion: Motion, length: float, holds: Array | None = None) -> 
 
 
 def slider_state(motion: Motion, length: float) -> Array:
-    """Return an elastic slider's deflection over its limit, in [-1, 1]: it slips after `length`, m."""
+    """Return an elastic slider's deflection over its limit, in [-1, 1]; it slips after `length`."""
     x = np.ascontiguousarray(motion.displacement)
     return np.asarray(_stop(x, length, passes=2 if motion.periodic else 1))
 
