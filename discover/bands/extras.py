@@ -114,7 +114,8 @@ def found(device: Device) -> Found:
         return now
     best = now
     starts = {b.bands: b for b in (now.banded, now.fewer[0])}
-    for start in (*starts.values(), _other_family(now)):
+    others = [_other_family(now)] if now.banded.bands == 1 else []  # bands may differ in family
+    for start in (*starts.values(), *others):
         way = replace(now, banded=start)
         for _ in range(MOST):
             more = _with_one_more(device, way)
