@@ -68,9 +68,14 @@ class Assessor:
         return Evaluator(self.space.sheet, self.space.scales, coarse=True)
 
     def assess(
-        self, model: Composite, start: Place, *, refit: bool = True, iterations: int = 12
+        self, model: Composite, start: Place, *, refit: bool = True, iterations: int = 12,
+        coarse: bool = False,
     ) -> Assessed:
-        """Return a model fitted and assessed, from sizes to start from."""
+        """Return a model fitted and assessed, from sizes to start from.
+
+        In a hurry with a quarter of a cycle's points (`coarse`), or few `iterations`.
+        """
+        evaluator = self.coarse if coarse else self.evaluator
         place = start
         local = Local(model, (), *[np.zeros(0)] * 4)
         visited: dict[Place, float] = {}
@@ -78,7 +83,7 @@ class Assessor:
             sizes = place.sizes(self.space.own_unit)
             numbers = None if refit else ()
             local = fitted(
-                self.space, self.evaluator, model, sizes, self.curve_of(model),
+                self.space, evaluator, model, sizes, self.curve_of(model),
                 numbers=numbers, iterations=iterations,
             )
             visited = {}

@@ -17,6 +17,7 @@ from models.terms import TERMS
 _NAMES = 5  # that are fitted, of those that gain most
 _SHAPES = 2  # of each, from which a fit starts
 _IMPACTS = 3  # likewise, where there are impacts
+_FEW_STEPS, _STEPS = 3, 12  # of a fit: from several shapes, and from one
 _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already
@@ -129,12 +130,12 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
         if len(chosen) == most:
             break
     begun = []
+    start = now.place.towards(assessor.space.quiet)
     for gain in chosen:
-        terms = _begun(gain)
-        model = now.model.plus(*terms)
-        steps = 3 if len(chosen) > 1 else 12
-        place = now.place.towards(assessor.space.quiet)
-        begun.append((assessor.assess(model, place, iterations=steps), gain))
+        model = now.model.plus(*_begun(gain))
+        steps = _FEW_STEPS if len(chosen) > 1 else _STEPS
+        one = assessor.assess(model, start, iterations=steps, coarse=impacts)
+        begun.append((one, gain))
     begun.sort(key=lambda b: -(b[0].value + b[1].trial.log_prior))
     first, gain = begun[0]
     first = assessor.assess(first.model, first.place)
