@@ -74,9 +74,7 @@ def is_told(assessor: Assessor, assessed: Assessed, count: int) -> bool:
     A term that is probable beside a remainder, but that a model which has to predict by itself
     may as well do without, stands for a part of that remainder.
     """
-    best = assessor.predicting(assessed)
+    spread = spread_of(assessor, assessed, assessor.predicting(assessed))
     first = len(assessed.model.terms) - count
-    last = [i for i, n in enumerate(best.local.numbers) if n.term >= first and n.shape is None]
-    found = best.judged.solved
-    deviation = np.sqrt(np.diagonal(found.covariance))
-    return bool(np.any(np.abs(found.mean[last]) > _SURE * deviation[last]))
+    last = [i for i, n in enumerate(spread.numbers) if n.term >= first and n.shape is None]
+    return bool(np.any(np.abs(spread.mean[last]) > _SURE * spread.deviation[last]))
