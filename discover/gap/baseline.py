@@ -11,7 +11,7 @@ from discover.motion_fit import Observation
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.local import judged, local_of
 from discover.posterior.model import Composite, Evaluator, Placed
-from discover.posterior.reversal import reversal_of
+from discover.posterior.reversal import with_few_curves
 from discover.posterior.setup import space_of
 from discover.rows import RecordRows, record_rows
 from models.checks import InputError
@@ -135,23 +135,22 @@ def fit_terms(assessor: Assessor, ids: Sequence[str]) -> Assessed:
     return assessor.assess(best, space.start)
 
 
-def few_curves(
-    assessor: Assessor, found: Assessed, best: Assessed, model: ForceModel
-) -> ForceModel:
-    """Return a model as it was found, friction by the few curves that make its whole curve."""
-    reversal = reversal_of(assessor, found, best)
-    if reversal is None:
-        return model
-    name = reversal.terms[0].id
-    place = next(i for i, t in enumerate(model.terms) if t.id == name)
-    terms = (*model.terms[:place], *reversal.terms, *model.terms[place + 1 :])
-    return ForceModel(terms, model.name)
+def in_few_curves(
+    assessor: Assessor, found: Assessed, best: Assessed
+) -> tuple[Composite, tuple[FittedTerm, ...]]:
+    """Return a model's numbers beside few curves of friction, and its terms with these."""
+    reversal, model = with_few_curves(assessor, found, best)
+    terms: list[FittedTerm] = []
+    for placed in model.terms:
+        whole = reversal is not None and placed.fitted.id == reversal.terms[0].id
+        own = reversal.terms if whole and reversal is not None else (placed.fitted,)
+        terms += [] if placed.held else own
+    return model, tuple(terms)
 
 
 def _predicting(assessor: Assessor, found: Assessed) -> ForceModel:
     """Return a model at the numbers that predict best, friction by few curves."""
-    best = assessor.predicting(found)
-    return few_curves(assessor, found, best, best.model.in_unit(0))
+    return ForceModel(in_few_curves(assessor, found, assessor.predicting(found))[1])
 
 
 def _shapes(identifier: str, scales: Scales) -> list[dict[str, float]]:

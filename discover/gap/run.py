@@ -197,7 +197,7 @@ def _alternatives(step: Step, effect: str, at: Stage) -> tuple[tuple[str, float]
 def _named(baseline: Baseline, entry: Round, number: int, found: Search) -> NamedEffect:
     before, after = entry.before, entry.after
     spread = spread_of(baseline.assessor, after.assessed, after.predicting)
-    model = after.predicting.model
+    model = after.predicting
     place = next(
         i for i in reversed(range(len(model.terms))) if model.terms[i].fitted.id == entry.effect
     )
@@ -253,7 +253,7 @@ def _mended_terms(baseline: Baseline, at: Stage, spread: Spread) -> tuple[Mended
         *held,
         *(
             MendedTerm(p.fitted, _interval(spread, i, p.fitted))
-            for i, p in enumerate(at.predicting.model.terms)
+            for i, p in enumerate(at.predicting.terms)
             if not p.held
         ),
     )

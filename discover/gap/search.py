@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.gap.baseline import Baseline, few_curves
+from discover.gap.baseline import Baseline, in_few_curves
 from discover.posterior.assess import Assessed
 from discover.posterior.grow import Candidate, Step, grown
 from discover.posterior.left_out import left_out
+from discover.posterior.model import Composite
 from discover.rows import Accuracy, accuracy, pooled_percent
 from models.constitutive import FittedTerm, ForceModel
 
@@ -23,7 +24,7 @@ class Stage:
 
     assessed: Assessed
     """Fitted; friction by the whole of its curve."""
-    predicting: Assessed
+    predicting: Composite
     """The same at the numbers that predict best."""
     models: tuple[ForceModel, ...]
     """The model in each record; friction by few curves."""
@@ -50,7 +51,7 @@ class Stage:
     @property
     def terms(self) -> tuple[FittedTerm, ...]:
         """All terms that are not held."""
-        return tuple(p.fitted for p in self.predicting.model.terms if not p.held)
+        return tuple(p.fitted for p in self.predicting.terms if not p.held)
 
 
 @dataclass(frozen=True)
@@ -93,16 +94,16 @@ class Search:
 def stage(baseline: Baseline, assessed: Assessed) -> Stage:
     """Return what an assessed model makes of every record."""
     best = assessed if baseline.fixed else baseline.assessor.predicting(assessed)
-    own = tuple(p.fitted for p in best.model.terms if not p.held)
+    model, own = best.model, tuple(p.fitted for p in best.model.terms if not p.held)
     if not baseline.fixed:
-        own = few_curves(baseline.assessor, assessed, best, ForceModel(own)).terms
+        model, own = in_few_curves(baseline.assessor, assessed, best)
     models = baseline.with_terms(own)
     accuracies = tuple(
         accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
     )
     held = tuple(a for a in accuracies if a.observation.held_out)
     return Stage(
-        assessed, best, tuple(models), accuracies, held or _left_out(baseline, best, accuracies)
+        assessed, model, tuple(models), accuracies, held or _left_out(baseline, best, accuracies)
     )
 
 
@@ -175,7 +176,7 @@ def _given(baseline: Baseline) -> Stage:
         accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
     )
     held = tuple(a for a in accuracies if a.observation.held_out)
-    return Stage(assessed, assessed, tuple(models), accuracies, held or accuracies)
+    return Stage(assessed, assessed.model, tuple(models), accuracies, held or accuracies)
 
 
 def _accepted(baseline: Baseline, here: Stage, step: Step) -> tuple[Step, tuple[str, ...]]:

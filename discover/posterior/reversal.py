@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import logsumexp
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.covariance import Sizes
+from discover.posterior.local import fitted
 from discover.posterior.metric import curve_given
+from discover.posterior.model import Composite
 from discover.posterior.space import Part
 from discover.regression.best_subset import best_subsets
 from models.checks import Array
 from models.constitutive import FittedTerm
 
 _MOST = 3  # curves that a model is given
+_NOTHING = 1e-3  # of friction, below which a curve is left out
 _ENOUGH = 0.05  # of a row's noise, that these may leave of the whole curve
 
 
@@ -35,6 +38,38 @@ class Reversal:
     """95 %."""
     differs: float
     """Standard deviation between records, over the friction."""
+
+
+def with_few_curves(
+    assessor: Assessor, assessed: Assessed, predicting: Assessed
+) -> tuple[Reversal | None, Composite]:
+    """Return friction by few curves, and the model with its numbers fitted beside these.
+
+    Its terms are those of `predicting`, friction whole at its place: what `Reversal.terms` add up
+    to. A model that has to predict has few curves, so its numbers are the best beside these; where
+    nothing but noise is left, those beside the whole curve are.
+    """
+    found = reversal_of(assessor, assessed, predicting)
+    model, space = predicting.model, assessor.space
+    if found is None or predicting is assessed:
+        return found, model
+    name = found.terms[0].id
+    at = next(i for i, p in enumerate(model.terms) if p.fitted.id == name)
+    whole, (first, *more) = model.terms[at], found.terms
+    terms = [replace(p, fitted=first) if i == at else p for i, p in enumerate(model.terms)]
+    wide = Composite((*terms, *(replace(whole, fitted=t) for t in more)))
+    free = [n for n in wide.numbers if n.shape is None or wide.terms[n.term].fitted.id != name]
+    sizes = predicting.place.sizes(space.own_unit)
+    best = fitted(space, assessor.evaluator, wide, sizes, None, numbers=free).model
+    parts = [best.terms[i].fitted for i in (at, *range(len(terms), len(best.terms)))]
+    total = sum(t.coefficient for t in parts)
+    kept = tuple(t for t in parts if t.coefficient > _NOTHING * total) or (parts[0],)
+    own = FittedTerm(name, total, whole.fitted.shape)
+    aligned = [
+        replace(whole, fitted=own) if i == at else p
+        for i, p in enumerate(best.terms[: len(terms)])
+    ]
+    return replace(found, terms=kept), Composite(tuple(aligned))
 
 
 def reversal_of(

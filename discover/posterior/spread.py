@@ -9,7 +9,7 @@ from scipy.special import logsumexp
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.local import judged
-from discover.posterior.model import Number
+from discover.posterior.model import Composite, Number
 from models.checks import Array
 
 _SURE = 1.96  # standard deviations, at which 95 % are of one sign
@@ -39,7 +39,7 @@ class Spread:
         return float(np.clip(middle - half, low, high)), float(np.clip(middle + half, low, high))
 
 
-def spread_of(assessor: Assessor, assessed: Assessed, predicting: Assessed) -> Spread:
+def spread_of(assessor: Assessor, assessed: Assessed, predicting: Composite) -> Spread:
     """Return the posterior of a model's numbers: a mixture over the sizes that were visited.
 
     It is centred on the numbers that predict best; how far these are from the mixture's own, as a
@@ -64,7 +64,7 @@ def spread_of(assessor: Assessor, assessed: Assessed, predicting: Assessed) -> S
     between = np.array(means) - mean
     whole = np.einsum("w,wpq->pq", share, covariances)
     whole = whole + np.einsum("w,wp,wq->pq", share, between, between)
-    centre = np.array([predicting.local.model.value(n) for n in local.numbers])
+    centre = np.array([predicting.value(n) for n in local.numbers])
     return Spread(local.numbers, centre, whole + np.outer(mean - centre, mean - centre))
 
 
@@ -74,7 +74,7 @@ def is_told(assessor: Assessor, assessed: Assessed, count: int) -> bool:
     A term that is probable beside a remainder, but that a model which has to predict by itself
     may as well do without, stands for a part of that remainder.
     """
-    spread = spread_of(assessor, assessed, assessor.predicting(assessed))
+    spread = spread_of(assessor, assessed, assessor.predicting(assessed).model)
     first = len(assessed.model.terms) - count
     last = [i for i, n in enumerate(spread.numbers) if n.term >= first and n.shape is None]
     return bool(np.any(np.abs(spread.mean[last]) > _SURE * spread.deviation[last]))

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.signal.windows import tukey
 
 from discover.motion_fit import Observation
 from discover.rows.force import force_at_samples
@@ -13,6 +14,7 @@ from discover.rows.record_rows import RecordRows
 from models.checks import Array
 from models.constitutive import ForceModel
 
+_FADES = 0.1  # of a record that does not repeat, over which its ends count less
 _DROWNED = 100.0  # times the median row's noise, above which a row shows nothing
 
 
@@ -67,9 +69,24 @@ def compared_with(observation: Observation, force: Array) -> Accuracy:
     noise = sum(w.share * w.noise_power for w in observation.windows)
     left = observation.measured - force
     return Accuracy(
-        observation, force, float(np.mean(left**2)), float(np.mean(observation.measured**2)),
+        observation, force, _power(observation, left), _power(observation, observation.measured),
         float(noise),
     )  # fmt: skip
+
+
+def _power(observation: Observation, signal: Array) -> float:
+    """Return the mean square of a signal at the usable samples, over the band where it has an end.
+
+    A filter's slope lies beyond the band, and the ends of a record that does not repeat rest on
+    motion that is not there: neither counts.
+    """
+    if observation.cutoff is None or observation.kind == "periodic":
+        return float(np.mean(signal**2))
+    taper = tukey(signal.size, _FADES)
+    spectrum = np.abs(np.fft.rfft(signal * taper)) ** 2
+    spectrum[1:] *= 2.0
+    inside = np.fft.rfftfreq(signal.size, observation.record.even.step) <= observation.cutoff
+    return float(np.sum(spectrum[inside]) / (signal.size * np.sum(taper**2)))
 
 
 def _pooled(accuracies: Sequence[Accuracy], part: Callable[[Accuracy], float]) -> float:

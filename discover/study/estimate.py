@@ -10,7 +10,7 @@ import numpy as np
 from discover.bands.extras import Found, composite
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.model import Composite, Number
-from discover.posterior.reversal import Reversal, reversal_of
+from discover.posterior.reversal import Reversal, with_few_curves
 from discover.posterior.spread import Spread, spread_of
 from discover.study.mixture import Normal, interval_of, normals
 from discover.study.prepare import Prepared
@@ -44,24 +44,29 @@ def estimated(prepared: Prepared, found: Found) -> Estimates:
     assessor = prepared.device.assessor
     assessed = composite(prepared.device, found)
     best = assessor.predicting(assessed)
-    spread = spread_of(assessor, assessed, best)
-    with_friction = prepared.device.with_friction
-    reversal = reversal_of(assessor, assessed, best) if with_friction else None
+    reversal, model = None, best.model
+    if prepared.device.with_friction:
+        reversal, model = with_few_curves(assessor, assessed, best)
+    none = reversal is not None and not any(t.coefficient for t in reversal.terms)
+    spread = spread_of(assessor, assessed, model)
     shares = found.banded.shares
     by_band: list[list[TermEstimate]] = [[] for _ in range(found.banded.bands)]
     mixed = [normals(prepared.device, found, spread, b) for b in range(found.banded.bands)]
-    for place, placed in enumerate(best.model.terms):
+    for place, placed in enumerate(model.terms):
+        if none and placed.fitted.id == prepared.device.friction.id:
+            continue  # the records are best predicted without friction
         whole = reversal is not None and placed.fitted.id == prepared.device.friction.id
         if whole and reversal is not None:
-            own = _friction(reversal, best.model, spread, place)
+            own = _friction(reversal, model, spread, place)
         else:
-            own = [_estimate(best.model, spread, place)]
+            own = [_estimate(model, spread, place)]
         for band, terms in enumerate(by_band):
             if placed.share is None or np.allclose(placed.share, shares[band]):
                 terms += [_over_variants(t, mixed[band]) for t in own]
     return Estimates(
-        assessor, best, spread, reversal, tuple(tuple(terms) for terms in by_band)
-    )
+        assessor, best, spread, None if none else reversal,
+        tuple(tuple(terms) for terms in by_band),
+    )  # fmt: skip
 
 
 def _estimate(model: Composite, spread: Spread, place: int) -> TermEstimate:

@@ -81,7 +81,7 @@ def normals(
         variants[band] = place
         way = replace(found, banded=replace(found.banded, variants=tuple(variants)))
         assessed = composite(device, way)
-        own = spread_of(device.assessor, assessed, device.assessor.predicting(assessed))
+        own = spread_of(device.assessor, assessed, device.assessor.predicting(assessed).model)
         _take(known, way, own, band, weight)
     return known
 
