@@ -23,7 +23,7 @@ def part(kind, place):
     return single_cases(kind, [DEVICE], [SIZES[place]])[place::3]
 
 
-@pytest.mark.parametrize(("kind", "place"), zip(SETS, (2, 0, 1), strict=True))
+@pytest.mark.parametrize(("kind", "place"), list(zip(SETS, (2, 0, 1), strict=True)))
 def test_effects_are_named_and_close_the_gap(kind, place):
     bar = bars(kind)
     found = [o for o in outcomes(part(kind, place)) if o.named[0] != IMPOSSIBLE]
