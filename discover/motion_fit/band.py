@@ -20,7 +20,6 @@ _SIGNAL_TO_NOISE = 1000.0  # of the displacement's power, at the edge of the exc
 EDGE = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
 _NYQUIST_SHARE = 0.95
 _FEWEST_LINES = 8
-_NARROWER = 3  # times at most, that the band is narrowed to where force follows motion
 RELATIVE_FLOOR = 1e-6
 _TAPER = 0.1
 _EDGE_PERIODS = 4.0
@@ -60,10 +59,9 @@ def choose_cutoff(displacement: Array, step: float) -> float:
     return float(min(max(edge, _FEWEST_LINES * frequencies[1]), _NYQUIST_SHARE * nyquist))
 
 
-def _band_motion(record: Record, usable: slice, cutoff: float) -> Motion:
-    """Return the motion up to a frequency, Hz."""
-    assert record.displacement is not None
-    step, x = record.step, record.displacement[usable]
+def _band_motion(record: Record, usable: slice, x: Array, cutoff: float) -> Motion:
+    """Return the motion up to a frequency, Hz, of a displacement (N,) at the usable samples."""
+    step = record.step
     reference = x - x[0]
     edge_noise = float(np.clip(_white_noise(x, step, cutoff) / np.std(x), 1e-7, 1e-2))
 
@@ -167,15 +165,14 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         raise InputError("displacement", expected="given", where=record.file)
     step = record.step
     time, x, force = record.time[usable], record.displacement[usable], record.force[usable]
-    cutoff = choose_cutoff(x, step)
-    for _ in range(_NARROWER):
-        motion = _band_motion(record, usable, cutoff)
+    cutoff, follows = np.inf, choose_cutoff(x, step)
+    while follows < EDGE * cutoff:  # each time by a tenth at least, and never below a few lines
+        cutoff = follows
+        motion = _band_motion(record, usable, x, cutoff)
         pieces = _pieces(time.size, cutoff * step)
         inner = slice(pieces[0][0], pieces[-1][0] + pieces[-1][1].size)
         found = band_noise(motion, force, step, cutoff, inner)
-        if found.follows > EDGE * cutoff:
-            break
-        cutoff = found.follows
+        follows = found.follows
     noise = found.spectrum
     velocity = motion.velocity
     mass = sum(float(np.sum(taper**2)) for _, taper in pieces)

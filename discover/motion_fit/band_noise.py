@@ -38,7 +38,7 @@ class BandNoise:
     spectrum: NoiseSpectrum
     """The noise."""
     follows: float
-    """Hz up to which the force follows the motion; 0 where it nowhere does."""
+    """Hz up to which the force follows the motion; a dozen lines are left where it nowhere does."""
 
 
 def band_noise(

@@ -77,7 +77,7 @@ def _local(windows: tuple[Window, ...]) -> Array:
     """Return the share (R,) of a window's independent error that is in each row.
 
     What models miss is larger where the force is, but not as much: over ten measured machines its
-    amplitude goes as the force's to a power between 0 and 1, 0.6 in the middle.
+    amplitude goes as the force's to a power from about 0 to about 1, 0.6 in the middle.
     """
     omega = np.concatenate([w.omega for w in windows])
     power = np.concatenate([np.abs(w.force) ** 2 for w in windows])

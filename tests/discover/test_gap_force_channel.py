@@ -11,7 +11,7 @@ from tests.discover.gap_data import PLAN, campaign
 BASELINE = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
 DROOP, RC = 0.3, 3e-3
 FEW_SHAPES = pytest.mark.xfail(
-    strict=False, reason="of two shapes that are fitted one is a delay of each test"
+    strict=True, reason="of two shapes that are fitted one is a delay of each test"
 )
 
 
@@ -125,7 +125,7 @@ def test_a_force_that_was_filtered_after_it_was_sampled_is_a_delay(order):
     assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
 
 
-@pytest.mark.xfail(strict=False, reason="half of the gain, and a filter before sampling, is stated")
+@pytest.mark.xfail(strict=True, reason="half of the gain, and a filter before sampling, is stated")
 def test_a_gain_behind_a_logger_s_filter_is_no_delay():
     """Its lag is a twentieth of a sample; a delay had been named with certainty."""
     corner = 55.0
