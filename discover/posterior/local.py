@@ -85,7 +85,7 @@ def local_of(
         fitted = model.terms[n.term].fitted
         if n.shape is None:
             low, high = fitted.term.coefficient_bounds(fitted.shape)
-            spread[i] = min(sizes[i], 0.5 * max(-low, high))
+            spread[i] = min(sizes[i], max(-low, high))
             sign[i] = float(low >= 0.0) - float(high <= 0.0)
         else:
             low, high = shape_bounds(model, n, space.scales)

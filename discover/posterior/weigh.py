@@ -97,7 +97,7 @@ def gains(
     for entry in trials.entries:
         low, high = entry.terms[0].term.coefficient_bounds(entry.terms[0].shape)
         sign[entry.places] = float(low >= 0.0) - float(high <= 0.0)
-        size[entry.places] = np.minimum(size[entry.places], 0.5 * max(-low, high))
+        size[entry.places] = np.minimum(size[entry.places], max(-low, high))
     single, mean = _single(np.diagonal(gram), side, size, sign)
     found = []
     for entry in trials.entries:
