@@ -6,8 +6,9 @@ import argparse
 import datetime
 from pathlib import Path
 
+from tests.calibration.commit import current_commit
 from tests.calibration.gap.case import KEPT, SETS, Case, clean_cases, pair_cases, single_cases
-from tests.calibration.gap.study import current_commit, outcomes
+from tests.calibration.gap.study import outcomes
 from tests.calibration.gap.table import table
 
 ROOT = Path(__file__).parents[3]

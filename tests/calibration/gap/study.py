@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -169,13 +168,3 @@ def read_outcomes(path: Path) -> list[Outcome]:
             kept[key] = tuple(kept[key])
         result.append(Outcome(Case(**case), **kept))
     return result
-
-
-def current_commit() -> str:
-    """Return the commit, with "+" where files that are tracked have changed."""
-    def git(*words: str) -> str:
-        done = subprocess.run(["git", *words], capture_output=True, text=True, check=False)
-        return done.stdout.strip()
-
-    dirty = git("status", "--porcelain", "--untracked-files=no")
-    return git("rev-parse", "--short", "HEAD") + ("+" if dirty else "")

@@ -23,8 +23,19 @@ def part(kind, place):
     return single_cases(kind, [DEVICE], [SIZES[place]])[place::3]
 
 
-# The first set at 5 % fell below its bars; the second is not judged here: see CHANGELOG.
-@pytest.mark.parametrize(("kind", "place"), [("first", 1), ("third", 1)])
+MISSED = pytest.mark.xfail(strict=True, reason="compliance is named play, a Stribeck fall missed")
+OPEN = pytest.mark.xfail(strict=True, reason="play, a delay and a drift are named but not closed")
+
+
+@pytest.mark.parametrize(
+    ("kind", "place"),
+    [
+        ("first", 1),
+        pytest.param("first", 2, marks=MISSED),
+        pytest.param("second", 0, marks=OPEN),
+        ("third", 1),
+    ],
+)
 def test_effects_are_named_and_close_the_gap(kind, place):
     bar = bars(kind)
     found = [o for o in outcomes(part(kind, place)) if o.named[0] != IMPOSSIBLE]

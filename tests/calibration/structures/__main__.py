@@ -10,7 +10,8 @@ import datetime
 import sys
 from pathlib import Path
 
-from tests.calibration.structures.run import LIMIT, current_commit, outcomes
+from tests.calibration.commit import current_commit
+from tests.calibration.structures.run import LIMIT, outcomes
 from tests.calibration.structures.sets import SEEDS, SETS, cases
 from tests.calibration.structures.table import document
 

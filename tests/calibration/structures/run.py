@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -98,13 +97,3 @@ def read(path: Path) -> list[Outcome]:
         one = Outcome(**values | {name: tuple(values[name]) for name in _LISTS})
         found[one.key] = one
     return list(found.values())
-
-
-def current_commit() -> str:
-    """Return the commit of the working tree, with "+" where tracked files have changed."""
-    def git(*words: str) -> str:
-        done = subprocess.run(["git", *words], capture_output=True, text=True, check=False)
-        return done.stdout.strip()
-
-    dirty = git("status", "--porcelain", "--untracked-files=no")
-    return git("rev-parse", "--short", "HEAD") + ("+" if dirty else "")

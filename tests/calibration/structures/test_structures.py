@@ -48,15 +48,32 @@ def test_two_boundaries_are_found():
     assert holds([all(o.brackets) for o in three], bars["brackets"])
 
 
-def test_extras_that_add_a_force_are_named_beside_their_cores():
-    # Joints and delays fall short of the bars, as the kept table shows, and joints take minutes.
+@pytest.mark.xfail(strict=True, reason="a gradual boundary is told as several sharp ones")
+def test_gradual_boundaries_are_found_as_such():
+    gradual = answered("two-boundaries", 1, lambda case: case.kind == "gradual")
+    assert holds([o.bands_right for o in gradual], BARS["two-boundaries"]["number"])
+
+
+def check_extras(found):
+    """Hold devices with one extra to their bars."""
     bars = BARS["one-extra"]
-    adds = {i for i, t in TERMS.items() if t.acts == "force"}
-    found = answered("one-extra", 3, lambda case: case.effect in adds)
     assert holds([o.core_right for o in found], bars["first"])
     assert holds([o.bands == 1 for o in found if o.kind != "SFOIM"], bars["none"])
     assert holds([o.extra_right for o in found], bars["extra"])
     assert sure_are_right(found)
+
+
+def test_extras_that_add_a_force_are_named_beside_their_cores():
+    adds = {i for i, t in TERMS.items() if t.acts == "force"}
+    check_extras(answered("one-extra", 3, lambda case: case.effect in adds))
+
+
+@pytest.mark.xfail(strict=True, reason="a delay is told as boundaries")
+def test_delays_are_named_beside_their_cores():
+    check_extras(answered("one-extra", 2, lambda case: case.effect == "time-delay"))
+
+
+# Devices with play or compliance take minutes each: only the whole study runs them.
 
 
 def test_what_is_outside_is_a_remainder_of_its_size():

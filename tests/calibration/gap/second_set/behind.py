@@ -9,26 +9,20 @@ import numpy as np
 from models.checks import Array
 from models.rig.bench import Bench, Scales
 from models.rig.effects.effect import Effect, Values
-from models.rig.stepping import Element, transmitted_force
+from models.rig.stepping import Element
+from tests.calibration.gap.load_path import change, start_joint, stiff
 
 Generator = np.random.Generator
 
 
-def _change(bench: Bench, element: Element, *, seals: bool) -> Array:
-    """Return what an element in the load path changes, seals behind it or not."""
-    force = transmitted_force(bench.stiff, bench.drive, element, seal_behind=seals)
-    base = bench.stiff_fluid + (bench.seals if seals else 0.0)
-    return bench.drive.sample(np.asarray(force - base))
-
-
 def _bolted(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # Rough joint faces: they stiffen as they are pressed, with a rounded start.
-    return _change(bench, _joint(amount, values, values["bend"]), seals=True)
+    return change(bench, _joint(amount, values, values["bend"]), seals=True)
 
 
 def _hose(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # A hose or gasket that yields more at high load.
-    return _change(bench, _joint(amount, values, -values["bend"]), seals=False)
+    return change(bench, _joint(amount, values, -values["bend"]), seals=False)
 
 
 def _joint(amount: float, values: Values, bend: float) -> Element:
@@ -50,37 +44,26 @@ def _draw_joint(rng: Generator, scales: Scales) -> dict[str, float]:
     }
 
 
-def _start_joint(scales: Scales) -> float:
-    return 0.05 * scales.speed**2 / scales.acceleration / scales.force
-
-
-def _stiff(bench: Bench, values: Values) -> tuple[float, float]:
-    """Return stiffness and damping of a contact that resonates above the tests."""
-    omega = 2.0 * math.pi * values["contact_frequency"]
-    inertance = bench.device.inertance
-    return inertance * omega**2, 2.0 * values["contact_damping"] * inertance * omega
-
-
 def _sealed_joint(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # Play that a soft ring fills: a little stiffness inside the gap.
-    stiffness, damping = _stiff(bench, values)
+    stiffness, damping = stiff(bench, values)
     half, ring = 0.5 * amount, values["ring"]
     line = np.array([-half - 1.0, -half, half, half + 1.0])
     inside = ring * stiffness * half
     load = np.array([-inside - stiffness, -inside, inside, inside + stiffness])
-    return _change(bench, Element(line, load, damping), seals=True)
+    return change(bench, Element(line, load, damping), seals=True)
 
 
 def _pin(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # A pin in its hole: the contact grows as it is pressed, from soft to stiff.
-    stiffness, damping = _stiff(bench, values)
+    stiffness, damping = stiff(bench, values)
     reach = values["force"] / stiffness
     deep = reach * np.linspace(0.0, 4.0, 160)[1:]
     press = stiffness * deep**2 / (deep + 0.5 * reach)
     half = 0.5 * amount
     line = np.concatenate([-half - deep[::-1], [-half, half], half + deep])
     load = np.concatenate([-press[::-1], [0.0, 0.0], press])
-    return _change(bench, Element(line, load, damping), seals=True)
+    return change(bench, Element(line, load, damping), seals=True)
 
 
 def _draw_contact(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -103,7 +86,7 @@ def _foaming(bench: Bench, force: Array, amount: float, values: Values) -> Array
     limit = 1.0 / amount
     if float(np.min(bench.stiff_fluid)) > -0.4 * limit:
         return np.zeros(force.size)
-    stiffness, damping = _stiff(bench, values)
+    stiffness, damping = stiff(bench, values)
     pull = np.concatenate([[-100.0], np.linspace(-3.0, 0.0, 240), [100.0]])
     n = 0.5 * values["knee"]
     drawn = np.abs(np.minimum(pull, 0.0))
@@ -112,7 +95,7 @@ def _foaming(bench: Bench, force: Array, amount: float, values: Values) -> Array
     element = Element(
         -edge * pull, limit * np.asarray(load), damping, values["refill_time"], edge
     )
-    return _change(bench, element, seals=False)
+    return change(bench, element, seals=False)
 
 
 def _start_limit(scales: Scales) -> float:
@@ -121,9 +104,9 @@ def _start_limit(scales: Scales) -> float:
 
 EFFECTS = (
     Effect("series-compliance", "bolted", "rough joint faces", _bolted, _draw_joint,
-           linear=False, acts="input", start=_start_joint, unit="m/N"),
+           linear=False, acts="input", start=start_joint, unit="m/N"),
     Effect("series-compliance", "hose", "softens with load", _hose, _draw_joint,
-           linear=False, acts="input", start=_start_joint, unit="m/N"),
+           linear=False, acts="input", start=start_joint, unit="m/N"),
     Effect("backlash", "sealed-joint", "a soft ring in the gap", _sealed_joint, _draw_contact,
            linear=False, acts="input", start=_start_play, unit="m"),
     Effect("backlash", "pin", "contact that stiffens", _pin, _draw_contact,

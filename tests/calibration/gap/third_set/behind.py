@@ -9,16 +9,10 @@ import numpy as np
 from models.checks import Array
 from models.rig.bench import Bench, Scales
 from models.rig.effects.effect import Effect, Values
-from models.rig.stepping import Element, transmitted_force
+from models.rig.stepping import Element
+from tests.calibration.gap.load_path import change, start_joint, stiff
 
 Generator = np.random.Generator
-
-
-def _change(bench: Bench, element: Element, *, seals: bool) -> Array:
-    """Return what an element in the load path changes, seals behind it or not."""
-    force = transmitted_force(bench.stiff, bench.drive, element, seal_behind=seals)
-    base = bench.stiff_fluid + (bench.seals if seals else 0.0)
-    return bench.drive.sample(np.asarray(force - base))
 
 
 def _eye(bench: Bench, force: Array, amount: float, values: Values) -> Array:
@@ -28,7 +22,7 @@ def _eye(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     given = amount * full * s
     load = full * (s + values["bend"] * s**3)
     damping = values["loss"] / amount / values["omega"]
-    return _change(bench, Element(np.asarray(given), np.asarray(load), damping), seals=True)
+    return change(bench, Element(np.asarray(given), np.asarray(load), damping), seals=True)
 
 
 def _gasket(bench: Bench, force: Array, amount: float, values: Values) -> Array:
@@ -39,7 +33,7 @@ def _gasket(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     given = s + values["bend"] * 0.1 * np.logaddexp(0.0, 10.0 * s)
     damping = values["loss"] / amount / values["omega"]
     shifted = amount * full * (given - np.interp(0.0, s, given))
-    return _change(bench, Element(np.asarray(shifted), loads, damping), seals=False)
+    return change(bench, Element(np.asarray(shifted), loads, damping), seals=False)
 
 
 def _draw_joint(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -51,34 +45,23 @@ def _draw_joint(rng: Generator, scales: Scales) -> dict[str, float]:
     }
 
 
-def _start_joint(scales: Scales) -> float:
-    return 0.05 * scales.speed**2 / scales.acceleration / scales.force
-
-
-def _stiff(bench: Bench, values: Values) -> tuple[float, float]:
-    """Return stiffness and damping of a contact that resonates above the tests."""
-    omega = 2.0 * math.pi * values["contact_frequency"]
-    inertance = bench.device.inertance
-    return inertance * omega**2, 2.0 * values["contact_damping"] * inertance * omega
-
-
 def _thread(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # A worn thread: one flank bears on more turns than the other, and the play lies off centre.
-    stiffness, damping = _stiff(bench, values)
+    stiffness, damping = stiff(bench, values)
     upper, lower = amount * values["share"], amount * (1.0 - values["share"])
     line = np.array([-lower - 1.0, -lower, upper, upper + 1.0])
     load = stiffness * np.array([-values["flank"], 0.0, 0.0, 1.0])
-    return _change(bench, Element(line, load, damping), seals=True)
+    return change(bench, Element(line, load, damping), seals=True)
 
 
 def _clevis(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     # A clevis that rocks before it bears: a first, softer contact over some of its play.
-    stiffness, damping = _stiff(bench, values)
+    stiffness, damping = stiff(bench, values)
     half, rock = 0.5 * amount, 0.3 * amount
     soft = values["rocking"] * stiffness * rock
     line = np.array([-half - rock - 1.0, -half - rock, -half, half, half + rock, half + rock + 1.0])
     load = np.array([-soft - stiffness, -soft, 0.0, 0.0, soft, soft + stiffness])
-    return _change(bench, Element(line, load, damping), seals=True)
+    return change(bench, Element(line, load, damping), seals=True)
 
 
 def _draw_contact(rng: Generator, scales: Scales) -> dict[str, float]:
@@ -102,7 +85,7 @@ def _vapour(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     limit = 1.0 / amount
     if float(np.min(bench.stiff_fluid)) > -0.5 * limit:
         return np.zeros(force.size)
-    stiffness, damping = _stiff(bench, values)
+    stiffness, damping = stiff(bench, values)
     pull = np.concatenate([[-100.0], np.linspace(-4.0, 0.0, 300), [100.0]])
     drawn = np.abs(np.minimum(pull, 0.0)) ** values["knee"]
     load = np.maximum(pull, 0.0) - (-np.expm1(-drawn)) ** (1.0 / values["knee"]) - 1e-4 * np.abs(
@@ -112,7 +95,7 @@ def _vapour(bench: Bench, force: Array, amount: float, values: Values) -> Array:
     element = Element(
         -edge * pull, limit * np.asarray(load), damping, values["refill_time"], edge
     )
-    return _change(bench, element, seals=False)
+    return change(bench, element, seals=False)
 
 
 def _start_limit(scales: Scales) -> float:
@@ -121,9 +104,9 @@ def _start_limit(scales: Scales) -> float:
 
 EFFECTS = (
     Effect("series-compliance", "eye", "a rod eye bushed with rubber", _eye, _draw_joint,
-           linear=False, acts="input", start=_start_joint, unit="m/N"),
+           linear=False, acts="input", start=start_joint, unit="m/N"),
     Effect("series-compliance", "gasket", "a flange on its gasket", _gasket, _draw_joint,
-           linear=False, acts="input", start=_start_joint, unit="m/N"),
+           linear=False, acts="input", start=start_joint, unit="m/N"),
     Effect("backlash", "thread", "a worn thread", _thread, _draw_contact,
            linear=False, acts="input", start=_start_play, unit="m"),
     Effect("backlash", "clevis", "a clevis that rocks", _clevis, _draw_contact,
