@@ -41,7 +41,8 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
     InputError
         Where a record can't be used.
     """
-    judged = check_records(campaign)
+    observations = observe_all(campaign.records, jobs)
+    judged = check_records(campaign, observations)
     found = [*size_findings(campaign, judged.records), *_plan_findings(judged.records)]
     findings = tuple(sorted((*judged.findings, *found), key=lambda f: _LEVELS.index(f.level)))
     rows: tuple[RecordRows, ...] = ()
@@ -50,7 +51,7 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
     inseparable: tuple[Inseparable, ...] = ()
     more: AddedTest | None = None
     if campaign.fitted:
-        rows = tuple(record_rows(o) for o in observe_all(campaign.records, jobs))
+        rows = tuple(record_rows(o) for o in observations)
         plan = plan_of([r for r in rows if not r.observation.held_out])
         structures = conditioning(plan)
         pairs = expected_pairs(plan)

@@ -157,6 +157,7 @@ def _with_rise(frequencies: Array, level: Array, lowest: float) -> tuple[Array, 
     few = min(_SLOPE_FROM, frequencies.size)
     if few < 3:
         return frequencies, level
-    slope = np.polyfit(np.log(frequencies[:few]), np.log(level[:few]), 1)[0]
+    known = np.maximum(level[:few], _LEAST)  # a record without noise has none here either
+    slope = np.polyfit(np.log(frequencies[:few]), np.log(known), 1)[0]
     rise = (lowest / frequencies[0]) ** float(np.clip(slope, -_STEEPEST, 0.0))
     return np.append(lowest, frequencies), np.append(level[0] * rise, level)

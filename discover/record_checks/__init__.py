@@ -1,4 +1,4 @@
-"""Judging records before anything is fitted: kind, noise floors, signs, copies."""
+"""Judging records before anything is fitted: kind, noise, signs, copies."""
 
 from discover.record_checks.apparent import Apparent, apparent
 from discover.record_checks.check import (
@@ -8,15 +8,16 @@ from discover.record_checks.check import (
     check_records,
     data_errors,
 )
-from discover.record_checks.noise import noise_floor
+from discover.record_checks.loop_work import LoopWork, loop_work
 
 __all__ = [
     "Apparent",
     "CampaignCheck",
+    "LoopWork",
     "RecordCheck",
     "apparent",
     "check_record",
     "check_records",
     "data_errors",
-    "noise_floor",
+    "loop_work",
 ]

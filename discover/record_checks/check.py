@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from discover.record_checks.apparent import Apparent, apparent
-from discover.record_checks.noise import noise_floor
+from discover.motion_fit import Observation
+from discover.record_checks.apparent import apparent
+from discover.record_checks.loop_work import LoopWork, loop_work
 from discover.record_kind import RecordKind, classify
 from discover.records import Campaign, Finding, Record
+from discover.rows import compared_with
 
-_SIGNIFICANT = 0.02  # of the force: a smaller share's sign says nothing
 _BEYOND_SKEW = 0.5  # of the force: no plausible delay turns that much of inertia into damping
 _FEW_CYCLES = 3.0
 _FEW_SAMPLES = 20.0  # a cycle
@@ -39,11 +41,10 @@ class RecordCheck:
     amplitude_m: float | None
     """Of a sine test: measured, or as labelled where the displacement is not; m."""
     force_noise_percent: float | None
-    """100 times the force's noise over its root mean square; None where it can't be told."""
+    """100 times the force's noise over its root mean square, as every verb says it; None where
+    the force is zero."""
     displacement_noise_m: float | None
-    """Standard deviation, m; None where it can't be told."""
-    apparent: Apparent | None
-    """Apparent mass and damping; None without displacement."""
+    """Standard deviation, m; None where displacement is not measured."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the entry of ``check.json``."""
@@ -84,25 +85,22 @@ class CampaignCheck:
         }
 
 
-def check_record(record: Record) -> RecordCheck:
-    """Judge one record: its kind, its sampling and the noise floors of its channels.
+def check_record(observation: Observation) -> RecordCheck:
+    """Judge one record: its kind, its sampling and the noise of its channels.
 
     Examples
     --------
+    >>> from discover.motion_fit import observe
     >>> t = np.arange(2000) / 500.0
     >>> x = 0.01 * np.sin(10.0 * t)
-    >>> found = check_record(Record("r.csv", t, -200.0 * np.sin(10.0 * t), x))
+    >>> found = check_record(observe(Record("r.csv", t, -200.0 * np.sin(10.0 * t), x)))
     >>> found.kind.kind, found.samples, round(found.sampling_hz, 6)
     ('sine', 2000, 500.0)
     """
+    record = observation.record
     kind = classify(record)
-    force_noise, displacement_noise = None, None
-    even = record.even
-    if even.displacement is not None:
-        displacement_noise = noise_floor(even.displacement, record.step, kind)
-        level = noise_floor(even.force, record.step, kind)
-        size = float(np.sqrt(np.mean(record.force[kind.usable] ** 2)))
-        force_noise = 100.0 * level / size if level is not None and size > 0.0 else None
+    measured = record.displacement is not None
+    seen = compared_with(observation, np.zeros_like(observation.measured))
     return RecordCheck(
         file=record.file,
         held_out=record.held_out,
@@ -110,31 +108,29 @@ def check_record(record: Record) -> RecordCheck:
         samples=record.time.size,
         sampling_hz=1.0 / record.step,
         frequency_hz=kind.frequency,
-        amplitude_m=record.amplitude if record.displacement is None else kind.amplitude,
-        force_noise_percent=force_noise,
-        displacement_noise_m=displacement_noise,
-        apparent=apparent(record, kind),
+        amplitude_m=kind.amplitude if measured else record.amplitude,
+        force_noise_percent=seen.noise_percent if seen.force_power > 0.0 else None,
+        displacement_noise_m=observation.displacement_noise if measured else None,
     )
 
 
-def check_records(campaign: Campaign) -> CampaignCheck:
+def check_records(campaign: Campaign, observations: Sequence[Observation]) -> CampaignCheck:
     """Judge every record, and the campaign as a whole: signs, copies, what is held out.
 
     Parameters
     ----------
     campaign : Campaign
         As read.
+    observations : sequence of Observation
+        Of all its records, in order.
 
     Returns
     -------
     CampaignCheck
-        Its findings begin with those of reading.
+        Its findings hold those of reading.
     """
-    records = tuple(check_record(record) for record in campaign.records)
-    findings = list(campaign.findings)
-    findings.extend(_signs(records))
-    findings.extend(_copies(campaign.records))
-    findings.extend(_roles(campaign))
+    records = tuple(check_record(observation) for observation in observations)
+    findings = [*campaign.findings, *_of_campaign(campaign)]
     for record in records:
         findings.extend(_quality(record))
     order = {"error": 0, "warning": 1, "note": 2}
@@ -144,56 +140,51 @@ def check_records(campaign: Campaign) -> CampaignCheck:
 
 def data_errors(campaign: Campaign) -> tuple[Finding, ...]:
     """Return what is wrong with the records, not merely remarkable: signs, above all."""
-    return tuple(
-        f
-        for f in check_records(campaign).findings
-        if f.level == "error" and f not in campaign.findings
-    )
+    return tuple(f for f in _of_campaign(campaign) if f.level == "error")
 
 
-def _signs(records: tuple[RecordCheck, ...]) -> list[Finding]:
-    """Return findings on records whose force gives energy instead of taking it.
+def _of_campaign(campaign: Campaign) -> list[Finding]:
+    return [*_signs(campaign.records), *_copies(campaign.records), *_roles(campaign)]
 
-    A passive device never gives energy, so its apparent damping is never negative. Its apparent
-    mass may be: at low frequency it can act as a spring.
-    """
-    known = [(r.file, r.apparent) for r in records if r.apparent is not None]
-    giving = [file for file, a in known if _gives_energy(a)]
+
+def _signs(records: tuple[Record, ...]) -> list[Finding]:
+    """Return findings on records whose force gives energy over closed loops of the motion."""
+    known = [(r, work) for r in records if (work := _work(r)) is not None]
+    giving = [r for r, work in known if work.gives]
     if not giving:
         return []
-    undecided = [file for file, a in known if not _gives_energy(a) and not _takes_energy(a)]
-    if len(giving) + len(undecided) == len(known):
-        found = [a for _, a in known]
-        inertia = sum(np.sign(a.mass) * a.mass_share**2 for a in found)
-        turned = max(a.damping_share for a in found if a.damping < 0.0)
-        if inertia > 0.0 and turned < _BEYOND_SKEW:
+    if not any(work.takes for _, work in known):
+        turned = max(-work.share for _, work in known)
+        if turned < _BEYOND_SKEW and _inertia(giving) > 0.0:
             text = (
-                "the device gives energy in every record (its apparent damping is negative, its "
-                "mass is not): force and displacement are skewed in time, or a channel is delayed"
+                "the work over closed loops is negative in every record, though little, and the"
+                " apparent mass is not: force and displacement are skewed in time, or a channel is"
+                " delayed"
             )
             return [Finding("warning", text)]
         text = (
-            "apparent mass and damping are negative throughout: the force column has the wrong "
-            "sign for the displacement's direction; multiply the force (or the displacement) by -1"
+            "the work over closed loops is negative throughout: the force column has the wrong"
+            " sign for the displacement's direction; multiply the force (or the displacement) by -1"
         )
         return [Finding("error", text)]
     text = (
-        "the device gives energy here (its apparent damping is negative) but not in other records: "
-        "the force has another sign or delay here than there"
+        "the device gives energy here (the work over closed loops is negative) but not in other"
+        " records: the force has another sign or delay here than there"
     )
-    return [Finding("error", text, file) for file in giving]
+    return [Finding("error", text, r.file) for r in giving]
 
 
-def _gives_energy(found: Apparent) -> bool:
-    if found.damping_share > _SIGNIFICANT:
-        return found.damping < 0.0
-    return found.mass < 0.0 and found.mass_share > _BEYOND_SKEW
+def _work(record: Record) -> LoopWork | None:
+    even = record.even
+    if even.displacement is None:
+        return None
+    return loop_work(even.displacement, even.force)
 
 
-def _takes_energy(found: Apparent) -> bool:
-    if found.damping_share > _SIGNIFICANT:
-        return found.damping > 0.0
-    return found.mass > 0.0 and found.mass_share > _BEYOND_SKEW
+def _inertia(records: Sequence[Record]) -> float:
+    """Return how much of the force acts as a mass (positive) or as a spring (negative)."""
+    found = [apparent(r, classify(r)) for r in records]
+    return float(sum(np.sign(a.mass) * a.mass_share**2 for a in found if a is not None))
 
 
 def _copies(records: tuple[Record, ...]) -> list[Finding]:

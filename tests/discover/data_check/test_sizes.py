@@ -9,13 +9,14 @@ import pytest
 
 from discover.data_check import check_campaign
 from discover.data_check.sizes import size_findings
+from discover.motion_fit import observe_all
 from discover.record_checks import check_records
 from discover.records import Campaign, Record
 from tests.discover.data_check.plan import WIDE, campaign
 
 
 def found(plan: Campaign) -> list[tuple[str | None, str]]:
-    findings = size_findings(plan, check_records(plan).records)
+    findings = size_findings(plan, check_records(plan, observe_all(plan.records, 1)).records)
     assert {f.level for f in findings} <= {"warning"}
     return [(f.record, f.text) for f in findings]
 
