@@ -21,7 +21,8 @@ def fleet_quantities(rows: Sequence[Row]) -> list[dict[str, Any]]:
 
     Coefficients are compared among bands of one structure; one whose unit differs between devices,
     as that of a fractional derivative does, is compared only among those that share it. Boundaries
-    are compared by their logarithms, since they lie over decades.
+    are compared by their logarithms, since they lie over decades. What stands apart is left out of
+    mean and spread.
 
     Parameters
     ----------
@@ -88,7 +89,9 @@ def _quantity(key: tuple[str, ...], values: list[dict[str, Any]]) -> dict[str, A
     table = np.array([[v["value"], v["lower"], v["upper"]] for v in values])
     table = np.log(table) if scaled else table
     errors = standard_errors(table[:, 1], table[:, 2])
-    common = pooled(table[:, 0], errors)
+    apart = far_from_rest(table[:, 0], errors)
+    rest = np.setdiff1d(np.arange(len(values)), [i for i, _ in apart])
+    common = pooled(table[rest, 0], errors[rest])
     ends = np.array([common.mean, *common.interval])
     mean, low, high = (float(e) for e in (np.exp(ends) if scaled else ends))
     return {
@@ -103,7 +106,7 @@ def _quantity(key: tuple[str, ...], values: list[dict[str, Any]]) -> dict[str, A
         "outliers": [
             {"campaign": values[i]["campaign"], "band": values[i]["band"],
              "value": values[i]["value"], "deviations": score}
-            for i, score in far_from_rest(table[:, 0], errors)
+            for i, score in apart
         ],
     }  # fmt: skip
 

@@ -7,7 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from discover.plots.style import ACCENT, INK, MODEL, MUTED, house_style, new_figure, to_svg
+from discover.plots.style import (
+    ACCENT,
+    INK,
+    MODEL,
+    MUTED,
+    house_style,
+    new_figure,
+    plain_log_axis,
+    to_svg,
+)
 
 _NAMED = 40  # devices that still have room for their names
 _ROW, _THIN = 18.0, 5.0  # CSS pixels
@@ -52,6 +61,8 @@ def over_devices(quantity: Mapping[str, Any], *, name: str, label: str) -> str:
                 [values[i]["value"] for i in at], rows[at], linestyle="none",
                 marker="D" if outlier else "o", markersize=6 if named else 4, color=colour,
             )
+        if quantity["kind"] == "boundary":
+            plain_log_axis(axes, which="x")
         axes.set_ylim(len(values) - 0.4, -0.6)
         names = [_short(v["campaign"]) for v in values] if named else []
         axes.set_yticks(rows[: len(names)], names)

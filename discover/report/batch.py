@@ -40,13 +40,13 @@ def batch_lines(document: Mapping[str, Any]) -> list[str]:
     for q in document["quantities"]:
         if q["kind"] == "boundary":
             lines.append(
-                f"Boundary: {quantity_name(q)} {significant(q['mean'], 3)}"
+                f"{capitalize_first(quantity_name(q))}: {significant(q['mean'], 3)}"
                 f" ({spread(q['interval'])}) over {counted(len(q['values']), 'device')};"
                 f" they differ by {significant(q['spread'], 2)} (standard deviation)."
             )
     apart = sorted({o["campaign"] for o in document["outliers"]})
     if apart:
-        lines.append(f"Apart from the rest: {listed(apart)}.")
+        lines.append(f"Apart from the rest: {counted(len(apart), 'device')}, {listed(apart)}.")
     return lines
 
 
@@ -56,13 +56,13 @@ def quantity_name(quantity: Mapping[str, Any]) -> str:
     Examples
     --------
     >>> quantity_name({"kind": "boundary", "name": "dean", "structure": ""})
-    'Dean number'
+    'boundary, Dean number'
     >>> quantity_name({"kind": "shape", "name": "order of x", "structure": "FOIM"})
     'order of x in FOIM'
     """
     if quantity["kind"] == "boundary":
         known = {"dean": "Dean number", "speed": "speed amplitude"}
-        return known.get(quantity["name"], str(quantity["name"]))
+        return f"boundary, {known.get(quantity['name'], quantity['name'])}"
     return f"{quantity['name']} in {quantity['structure']}"
 
 

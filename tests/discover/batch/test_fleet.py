@@ -67,6 +67,8 @@ def test_the_one_device_that_differs_stands_apart_in_its_inertance(answers):
     rows = table_rows(answers)
     document = batch_document(answers, rows, seed=0, model=None)
     assert {(o["campaign"], o["name"]) for o in document["outliers"]} == {("d5", "inertance")}
+    means = [q["mean"] for q in document["quantities"] if q["name"] == "inertance"]
+    assert means == pytest.approx([100.0, 100.0])  # of the others
 
 
 def test_coefficients_of_different_units_are_not_compared(answers):

@@ -62,6 +62,6 @@ def test_leaving_early_cancels_what_is_queued(address, tmp_path):
 
 def test_a_scheduler_that_is_not_there_is_told_in_one_line(monkeypatch):
     monkeypatch.setattr("discover.executor.cluster._PATIENCE", 0.5)
-    with pytest.raises(InputError, match=r"^--cluster tcp://127.0.0.1:9: scheduler must be") as told:
+    with pytest.raises(InputError, match="scheduler must be reachable") as told:
         done("tcp://127.0.0.1:9", tasks.squared, [1])
     assert "\n" not in str(told.value)
