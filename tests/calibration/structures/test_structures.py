@@ -48,7 +48,6 @@ def test_two_boundaries_are_found():
     assert holds([all(o.brackets) for o in three], bars["brackets"])
 
 
-@pytest.mark.xfail(strict=True, reason="a gradual boundary is told as several sharp ones")
 def test_gradual_boundaries_are_found_as_such():
     gradual = answered("two-boundaries", 1, lambda case: case.kind == "gradual")
     assert holds([o.bands_right for o in gradual], BARS["two-boundaries"]["number"])
