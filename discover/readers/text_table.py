@@ -9,10 +9,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 import pyarrow as pa
 import pyarrow.csv as pa_csv
 
+from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
 from discover.readers.layout import Layout, Rows, find_tables
 from discover.readers.numerals import value
@@ -250,12 +250,14 @@ def _read_fast(
         )
     except (pa.ArrowException, OSError):
         return None
-    return [np.array(table.column(key).to_numpy(), dtype=np.float64) for key in wanted]
+    return [doubles(table.column(key)) for key in wanted]
 
 
 def _read_blanks(
     body: bytes, names: list[str], wanted: list[str], decimal: str
 ) -> list[Array] | None:
+    import pandas as pd  # loaded here: only tables parted by blanks need it
+
     try:
         table = pd.read_csv(
             io.BytesIO(body), sep=r"\s+", header=None, names=names, usecols=wanted, decimal=decimal,
