@@ -15,7 +15,7 @@ from discover.bands.extras import Found, found
 from discover.dean import AmplitudeExponent, DeanCheck, amplitude_exponent, check_dean
 from discover.figure_data import StructureProbability, StudyFigureData
 from discover.motion_fit import Observation
-from discover.records import Campaign, checked_campaign
+from discover.records import Campaign
 from discover.rows import Accuracy, accuracy, pooled_percent
 from discover.study.bands import core_probabilities, study_bands
 from discover.study.baselines import baseline_answers
@@ -54,7 +54,7 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
     """
     chosen = options or StudyOptions()
     with threadpool_limits(1):  # its matrices are small: more threads take longer
-        prepared = prepare(checked_campaign(campaign), chosen)
+        prepared = prepare(campaign, chosen)
         answer = found(prepared.device)
         return _study(campaign, chosen, prepared, answer, estimated(prepared, answer))
 
