@@ -30,6 +30,7 @@ _SCALES = np.geomspace(3e-3, 1.0, 6)
 """Of the root mean square speed and displacement, over which friction may reverse."""
 _SLOW = 3  # polynomials of time that follow a drift
 _FEWEST_LINES = 12
+_LONG = 200_000  # samples, from which it matters how fast a length transforms
 _HALF_OCTAVE = float(np.sqrt(2.0))
 
 
@@ -65,8 +66,9 @@ def band_noise(
     inner : slice
         Samples that count: derivatives at a record's ends rest on what is not there.
     """
-    # A few samples less make transforms of the many columns several times as fast.
-    inner = slice(inner.start, inner.start + prev_fast_len(inner.stop - inner.start, real=True))
+    size = inner.stop - inner.start
+    if size > _LONG:  # a few samples less make many transforms several times as fast
+        inner = slice(inner.start, inner.start + prev_fast_len(size, real=True))
     force = force[inner]
     taper = np.hanning(force.size + 2)[1:-1]
     scale = np.sqrt(2.0 * step / np.sum(taper**2))
