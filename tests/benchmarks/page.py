@@ -35,7 +35,7 @@ _SHOWN = {
     ),
     "simulation": (r"friction and one fractional term, 1e5 steps", r"x'' \+ 0\.4"),
     "speed": (r".*",),
-    "scale": (r".*",),
+    "scale": (r"sine test of", r"[\d,]+ records of"),
     "study": (r"40 records of 20,000 samples", r"search at"),
     "search": (r"16 records of 10,000 samples",),
 }
