@@ -39,8 +39,7 @@ def _boundary(search: BandSearch, banded: Banded, lower: int) -> Boundary:
     values = search.coordinates[banded.coordinate]
     whole = _merged(banded.shares, lower)
     parts, ends = sharp(values)
-    kept = [i for i in range(len(parts)) if len(refined(whole, lower, parts[i : i + 1]))]
-    shares = refined(whole, lower, parts[kept])
+    shares, kept = refined(whole, lower, parts)
     few = search.only(banded.variants)
     start = np.tile(np.arange(banded.bands), (len(shares), 1))
     found = few.many(banded.place, banded.scale, shares, start).value
@@ -49,7 +48,7 @@ def _boundary(search: BandSearch, banded: Banded, lower: int) -> Boundary:
     bracket = banded.brackets[lower]
     total = np.cumsum(chances)
     first = int(np.searchsorted(total, 0.025))
-    last = min(int(np.searchsorted(total, 0.975)), len(kept) - 1)
+    last = min(int(np.searchsorted(total, 0.975)), kept.size - 1)
     interval = (min(float(ends[first, 0]), bracket[0]), max(float(ends[last, 1]), bracket[1]))
     middle = float(np.sqrt(bracket[0] * bracket[1]))
     soft = _gradual(few, banded, lower, whole, values)
@@ -72,7 +71,7 @@ def _gradual(
     search: BandSearch, banded: Banded, lower: int, whole: Array, values: Array
 ) -> tuple[float, float, float, tuple[float, float]] | None:
     """Return the log evidence of a gradual change, its place, width, and the place's interval."""
-    inside = values[whole[lower] > 0.0]
+    inside = values[whole[lower] > 0.5]
     low, high = np.log(inside.min()), np.log(inside.max())
     if not high > low:
         return None

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 from scipy.special import logsumexp
 
-from discover.bands.divisions import FEWEST, refined, sharp
+from discover.bands.divisions import (
+    Brackets,
+    Cut,
+    Divisions,
+    divided_again,
+    finer,
+    undivided,
+)
 from discover.bands.variants import as_choice
 from discover.posterior.assess import is_quiet
 from discover.posterior.climb import Place, climb
@@ -28,6 +35,7 @@ from models.checks import Array, Indices
 MOST_BANDS = 5
 _ROUNDS = 4  # of dividing and climbing
 _LOG_2 = float(np.log(2.0))
+_CLOSE = 0.01  # of a coordinate's logarithm, below which gradual divisions are one
 
 
 @dataclass(frozen=True)
@@ -38,8 +46,8 @@ class Banded:
     """Along which they lie; "" for one band."""
     shares: Array
     """(B, U) how much of each unit is in each band."""
-    brackets: tuple[tuple[float, float], ...]
-    """(B - 1) coordinates of the units beside each boundary."""
+    brackets: Brackets
+    """(B - 1)."""
     variants: tuple[int, ...]
     """(B,) places of the best ones."""
     by_variant: Array
@@ -59,6 +67,22 @@ class Banded:
     def bands(self) -> int:
         """Number of bands."""
         return int(self.shares.shape[0])
+
+
+@dataclass(frozen=True)
+class Way:
+    """The best of many divisions, at some sizes."""
+
+    cut: Cut
+    """Its last one."""
+    shares: Array
+    """(B, U)."""
+    brackets: Brackets
+    """(B - 1)."""
+    variants: Indices
+    """(B,) of each band."""
+    others: float
+    """Nats: log evidence of all divisions, with their priors, over this one's without."""
 
 
 @dataclass
@@ -126,90 +150,99 @@ class BandSearch:
 
     def one_band(self, start: Place) -> Banded:
         """Return what holds where all units are one band."""
-        whole = np.ones((1, 1, len(self.space.sheet.units)))
-        first = np.zeros((1, 1), dtype=int)
-        return self._banded("", whole, (), first, start, 0.0, [()])
+        whole = undivided(len(self.space.sheet.units))
+        return self._banded(whole, None, np.zeros((1, 1), dtype=int), start)
 
     def divided_again(self, now: Banded, *, asked: bool) -> Banded | None:
         """Return the best division with one band more.
 
         None where there are too few units, or where it is not asked for and can't be more probable.
         """
-        kinds = [now.coordinate] if now.coordinate else list(self.coordinates)
-        shares, brackets, starts, names = [], [], [], []
-        for name in kinds:
-            parts, ends = sharp(self.coordinates[name])
-            for band in range(now.bands):
-                new = refined(now.shares, band, parts) if now.bands > 1 else parts
-                kept = ends if now.bands == 1 else _kept(ends, now, band, parts)
-                variants = [*now.variants[: band + 1], *now.variants[band:]]
-                shares.append(new)
-                brackets += [
-                    tuple(sorted((*now.brackets, (float(a), float(b))))) for a, b in kept
-                ]
-                starts.append(np.tile(variants, (len(new), 1)))
-                names += [name] * len(new)
-        whole = np.concatenate(shares) if shares else np.zeros((0, 0, 0))
-        if not len(whole):
+        ways = divided_again(now.shares, now.brackets, self._along(now))
+        if ways is None:
             return None
-        prior = now.bands * -_LOG_2 - float(np.log(len(whole)))
-        if now.quiet and not asked:
-            answer = self.many(now.place, now.scale, whole, np.concatenate(starts))
-            most = now.value + float(logsumexp(answer.value)) - now.at_place
-            if most + prior < now.value:  # nothing is left that one more band could explain
-                return None
-        return self._banded(
-            names, whole, brackets, np.concatenate(starts), now.place, prior, brackets
+        start = np.array(
+            [[*now.variants[: c.band + 1], *now.variants[c.band :]] for c in ways.cuts]
         )
+        ways = replace(ways, log_prior=ways.log_prior - now.bands * _LOG_2)
+        if now.quiet and not asked:
+            answer = self.many(now.place, now.scale, ways.shares, start)
+            most = now.value + float(logsumexp(answer.value + ways.log_prior)) - now.at_place
+            if most < now.value:  # nothing is left that one more band could explain
+                return None
+        return self._banded(ways, now, start, now.place)
+
+    def _along(self, now: Banded) -> Mapping[str, Array]:
+        """Return the coordinates along which a division may have one band more."""
+        return {
+            name: values for name, values in self.coordinates.items()
+            if now.coordinate in ("", name)
+        }
 
     def _banded(
-        self,
-        names: str | Sequence[str],
-        shares: Array,
-        brackets: Sequence[tuple[tuple[float, float], ...]],
-        start: Indices,
-        place: Place,
-        prior: float,
-        ends: Sequence[tuple[tuple[float, float], ...]],
+        self, ways: Divisions, now: Banded | None, start: Indices, place: Place
     ) -> Banded:
-        """Return the best of divisions, its sizes climbed."""
-        best, scale = 0, self.one(place, shares[0], start[0])[1]
-        many = len(shares) > 1
+        """Return the best of ways to divide what there is now, its sizes climbed."""
+        scale = self.one(place, ways.shares[0], start[0])[1]
+        best = Way(ways.cuts[0], ways.shares[0], ways.brackets[0], start[0], 0.0)
         alone: dict[Place, tuple[float, int, Divided]] = {}
-        others = 0.0
         for _ in range(_ROUNDS):
-            begun = start
-            if many:
-                answer = self.many(place, scale, shares, start)
-                best, begun = int(answer.value.argmax()), answer.best
-                others = float(logsumexp(answer.value - answer.value[best]))
+            if now is not None:
+                best = self._best(ways, now, start, place, scale)
             alone = {}
-            there = climb(partial(self._seen, shares[best], begun[best], alone), place)
+            there = climb(partial(self._seen, best, alone), place)
             scale = alone[there][1]
             if there == place:
                 break
-            place, start = there, begun
-        self._seen(shares[best], begun[best], alone, self.space.quiet)
-        last = self.one(place, shares[best], begun[best])[2]
+            place = there
+        self._seen(best, alone, self.space.quiet)
+        last = self.one(place, best.shares, best.variants)[2]
         best_alone = alone[place][0]
         total = float(logsumexp([v for v, _, _ in alone.values()])) - best_alone
-        total += float(last.value[0]) if shares[best].shape[0] > 1 else best_alone
-        total += others + prior
-        variants = [self._of_best_core(own) for own in last.by_variant[0]]
+        total += float(last.value[0]) if now is not None else best_alone
+        variants = [self.of_best_core(own) for own in last.by_variant[0]]
         return Banded(
-            coordinate=names if isinstance(names, str) else names[best],
-            shares=shares[best],
-            brackets=ends[best],
+            coordinate=best.cut.coordinate,
+            shares=best.shares,
+            brackets=best.brackets,
             variants=tuple(variants),
             by_variant=last.by_variant[0],
-            value=total,
+            value=total + best.others,
             place=place,
             scale=scale,
             quiet=is_quiet({p: v for p, (v, _, _) in alone.items()}),
             at_place=float(last.value[0]),
         )
 
-    def _of_best_core(self, by_variant: Array) -> int:
+    def _best(
+        self, ways: Divisions, now: Banded, start: Indices, place: Place, scale: int
+    ) -> Way:
+        """Return the best way at some sizes; of gradual ones the best place and width."""
+        answer = self.many(place, scale, ways.shares, start)
+        weighed = answer.value + ways.log_prior
+        k = int(weighed.argmax())
+        rest = np.delete(weighed, k)
+        cut, shares, brackets = ways.cuts[k], ways.shares[k], ways.brackets[k]
+        value, best, chosen = answer.value[k], weighed[k], answer.best[k]
+        for _ in range(_ROUNDS if cut.width else 0):
+            prior, cut = ways.log_prior[k], replace(cut, steps=ways.cuts[k].steps)
+            few = self.only(chosen)
+            while cut.steps[0] > _CLOSE:
+                near = finer(cut, now.shares, now.brackets, self._along(now))
+                begun = np.tile(np.arange(chosen.size), (len(near.cuts), 1))
+                values = few.many(place, scale, near.shares, begun).value
+                around = values + near.log_prior + prior
+                i, best = int(around.argmax()), logsumexp(around)
+                value, prior = values[i], prior + near.log_prior[i]
+                cut, shares, brackets = near.cuts[i], near.shares[i], near.brackets[i]
+            before = chosen  # the best variants depend on where the change is, and it on them
+            chosen = self.many(place, scale, shares[None], chosen[None]).best[0]
+            if np.array_equal(before, chosen):
+                break
+        others = float(logsumexp([best, *rest]) - value)
+        return Way(cut, shares, brackets, chosen, others)
+
+    def of_best_core(self, by_variant: Array) -> int:
         """Return the best variant of the most probable core."""
         cores = np.array([v.core for v in self.variants])
         total = {core: logsumexp(by_variant[cores == core]) for core in dict.fromkeys(cores)}
@@ -217,22 +250,12 @@ class BandSearch:
         return int(np.argmax(np.where(cores == best, by_variant, -np.inf)))
 
     def _seen(
-        self, shares: Array, start: Indices, known: dict[Place, tuple[float, int, Divided]],
-        place: Place,
+        self, way: Way, known: dict[Place, tuple[float, int, Divided]], place: Place
     ) -> float:
         if place not in known:
-            known[place] = self.one(place, shares, start, others=shares.shape[0] == 1)
+            one_band = way.shares.shape[0] == 1
+            known[place] = self.one(place, way.shares, way.variants, others=one_band)
         return known[place][0]
-
-
-def _kept(ends: Array, now: Banded, band: int, parts: Array) -> Array:
-    """Return the brackets of the divisions of one band that `refined` keeps."""
-    inside = now.shares[band]
-    kept = [
-        i for i, pair in enumerate(parts)
-        if np.all(np.count_nonzero(pair * inside, axis=1) >= FEWEST)
-    ]
-    return ends[kept]
 
 
 def searched(

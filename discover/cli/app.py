@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 
 from discover._version import __version__
+from discover.cli.batch import batch
 from discover.cli.check import check
 from discover.cli.design import design
 from discover.cli.discover import discover
@@ -39,7 +40,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for verb in (init, check, discover, gap, simulate, synth, design, reproduce):
+for verb in (init, check, discover, gap, batch, simulate, synth, design, reproduce):
     app.command(verb.__name__)(verb)
 
 

@@ -12,8 +12,6 @@ from discover.cli.invocation import Invocation
 from discover.cli.results import after_reading, deliver, result_folder, working
 from models.checks import one_of
 
-_FIT = "fit:"
-
 
 def gap(
     context: typer.Context,
@@ -62,11 +60,10 @@ def gap(
     folder = result_folder("gap", campaign, out, model=model)
 
     # Loaded here: --help and complaints about options need no numerics.
-    from discover.cli.baseline_notes import baseline_notes
-    from discover.cli.named_model import named_model, paper_values
+    from discover.cli.gap_answer import FIT, gap_answer
     from discover.cli.own_effects import asked_effects, listed_effects, own_notes
     from discover.document import json_text
-    from discover.gap import FRACTIONAL, close_gap, term_ids
+    from discover.gap import term_ids
     from discover.motion_gap import motion_before_and_after, require_system
     from discover.readers import read_campaign
     from discover.report.gap import gap_figures, gap_lines, gap_report
@@ -78,26 +75,18 @@ def gap(
     context.with_resource(own_terms(*own))
     for name in named or ():
         one_of("effect", name, sorted(TERMS), where="--effects")
-    if model.startswith(_FIT):
+    if model.startswith(FIT):
         term_ids(model)
     with working(f"Reading {campaign}"):
         measured = read_campaign(campaign)
     if on == "motion":
         require_system(measured)
-    # The paper's b0 and order serve its own devices; for others they are fitted first.
-    device = measured.device
-    first = model in FRACTIONAL and device is not None and not paper_values(model, device)
-    chosen = model if first or model.startswith(_FIT) else named_model(model, device)
     with working(f"Comparing {len(measured.records)} records") as tell, after_reading(measured):
-        found = close_gap(
-            measured, chosen, fixed=fixed, effects=named, seed=seed, jobs=jobs, tell=tell
+        document, found = gap_answer(
+            measured, model, fixed=fixed, effects=named, seed=seed, jobs=jobs, tell=tell
         )
-    document = found.to_dict()
     if named is not None:
         document["effects"] = list(named)
-    document["findings"] += baseline_notes(
-        model, found.given, device, fixed=fixed, fitted=found.fitted
-    )
     if own:
         document["own_effects"] = listed_effects(own)
         document["findings"] += own_notes(document["own_effects"])

@@ -37,6 +37,16 @@ AsJson = Annotated[
 ]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Makes a run repeatable.")]
 Jobs = Annotated[int, typer.Option("--jobs", min=1, help="Number of processes.")]
+Cluster = Annotated[
+    str | None,
+    typer.Option(
+        "--cluster",
+        metavar="ADDRESS",
+        help="Of a Dask scheduler, as tcp://host:8786, whose workers do the work instead of"
+        " --jobs processes; they see the same folders.",
+        show_default=False,
+    ),
+]
 Terms = Annotated[
     str | None,
     typer.Option("--terms", metavar="ID,ID,…", help="Only these terms, all of them kept."),

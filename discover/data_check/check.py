@@ -13,7 +13,7 @@ from discover.data_check.separation import expected_pairs, inseparable_pairs
 from discover.data_check.sizes import size_findings
 from discover.motion_fit import observe_all
 from discover.record_checks import RecordCheck, check_records
-from discover.records import Campaign, Finding
+from discover.records import Campaign, Finding, checked_campaign
 from discover.rows import RecordRows, record_rows
 
 _LEVELS = ("error", "warning", "note")
@@ -41,6 +41,7 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
     InputError
         Where a record can't be used.
     """
+    campaign = checked_campaign(campaign)
     observations = observe_all(campaign.records, jobs)
     judged = check_records(campaign, observations)
     found = [*size_findings(campaign, judged.records), *_plan_findings(judged.records)]

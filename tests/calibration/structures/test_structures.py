@@ -48,7 +48,6 @@ def test_two_boundaries_are_found():
     assert holds([all(o.brackets) for o in three], bars["brackets"])
 
 
-@pytest.mark.xfail(strict=True, reason="a gradual boundary is told as several sharp ones")
 def test_gradual_boundaries_are_found_as_such():
     gradual = answered("two-boundaries", 1, lambda case: case.kind == "gradual")
     assert holds([o.bands_right for o in gradual], BARS["two-boundaries"]["number"])
@@ -68,7 +67,6 @@ def test_extras_that_add_a_force_are_named_beside_their_cores():
     check_extras(answered("one-extra", 3, lambda case: case.effect in adds))
 
 
-@pytest.mark.xfail(strict=True, reason="a delay is told as boundaries")
 def test_delays_are_named_beside_their_cores():
     check_extras(answered("one-extra", 2, lambda case: case.effect == "time-delay"))
 

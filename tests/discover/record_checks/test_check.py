@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from discover import record_checks
+from discover.data_check import check_campaign
 from discover.motion_fit import observe, observe_all
 from discover.readers import read_campaign
 from discover.record_checks import CampaignCheck, RecordCheck, apparent

@@ -1,0 +1,1 @@
+"""Many campaigns: which they are, their answers as one table, what the fleet has in common."""

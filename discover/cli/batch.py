@@ -1,0 +1,167 @@
+"""``inerter batch``: studies and gaps of many campaigns, one table and one page over all."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from discover.cli import options
+from discover.cli.invocation import Invocation
+from discover.cli.results import hold_folder, shown_path
+from models.checks import InputError, printable
+
+FAILED = 1
+MARK = ".inerter-batch"
+"""In the folder of a batch: what lies there is its own."""
+
+
+def batch(
+    context: typer.Context,
+    campaigns: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="CAMPAIGN…",
+            help="Folders with campaign.toml, files of records, or folders of such folders.",
+        ),
+    ],
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", help="Folder of all results; what is done there stays."),
+    ],
+    model: Annotated[
+        str | None,
+        typer.Option(
+            "--model",
+            metavar="M",
+            help="Search each campaign's gap to this model too, named as for `inerter gap`.",
+            show_default=False,
+        ),
+    ] = None,
+    as_json: options.AsJson = False,
+    seed: options.Seed = options.DEFAULT_SEED,
+    jobs: options.Jobs = 1,
+    cluster: options.Cluster = None,
+) -> int:
+    """Study many campaigns; the same command goes on where an earlier one was stopped.
+
+    Exits 1 where a campaign failed: it is told in one line, and the others are done.
+    """
+    _check_folder(out)
+    hold_folder(out)
+
+    # Loaded here: --help and complaints about options need no numerics.
+    from discover.batch.campaigns import listed_campaigns, stamp
+    from discover.batch.document import batch_document
+    from discover.batch.table import table_files, table_rows
+    from discover.cli.batch_work import Item, answer_of, is_done, work
+    from discover.document import json_text
+    from discover.executor import Lost, executor
+    from discover.report.batch import batch_lines, batch_report
+
+    model, model_hash = _model(model)
+    asked = {"seed": seed, "model": model, "model_hash": model_hash}
+    listed = listed_campaigns(campaigns)
+    home = out.resolve()
+    items = [
+        Item(one.path, one.given, home / one.label, stamp(one, asked), model, seed)
+        for one in listed
+    ]
+    errors = dict.fromkeys(range(len(items)), "")
+    todo = [i for i, item in enumerate(items) if not is_done(item)]
+    with executor(jobs, cluster) as where:
+        out.mkdir(parents=True, exist_ok=True)
+        (out / MARK).touch()
+        with _progress(len(items), len(items) - len(todo)) as tell:
+            for place, found in where.finished(work, [items[i] for i in todo]):
+                error = found.reason if isinstance(found, Lost) else found
+                errors[todo[place]] = error
+                tell(f"{listed[todo[place]].label}: {error}" if error else "")
+    answers = [
+        answer_of(item, one.label, errors[i])
+        for i, (item, one) in enumerate(zip(items, listed, strict=True))
+    ]
+    rows = table_rows(answers)
+    document = batch_document(answers, rows, seed=seed, model=model)
+    invocation: Invocation = context.obj
+    page = batch_report(document, rows, command=invocation.repeat(seed=seed))
+    text = json_text(document)
+    _write(out, {**table_files(rows), "batch.json": text.encode(), "report.html": page.encode()})
+    if as_json:
+        typer.echo(text, nl=False)
+    else:
+        for line in batch_lines(document):
+            typer.echo(line)
+        typer.echo(f"Table: {shown_path(home / 'table.csv')}")
+        typer.echo(f"Report: {shown_path(home / 'report.html')}")
+    return FAILED if any(errors.values()) else 0
+
+
+def _model(name: str | None) -> tuple[str | None, str]:
+    """Return a model's name, a file's in full, with the hash of its content."""
+    if name is None or not Path(name).is_file():
+        return name, ""
+    file = Path(name).resolve()
+    return str(file), hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def _check_folder(out: Path) -> None:
+    """Refuse a folder that holds anything but an earlier batch."""
+    where = str(out)
+    if not out.exists():
+        return
+    if not out.is_dir():
+        raise InputError("output", expected="a folder", found="a file", where=where)
+    found = sorted(p.name for p in out.iterdir())
+    if found and MARK not in found:
+        raise InputError(
+            "output", expected="a new folder or that of an earlier batch",
+            found=f"one that holds {found[0]}", where=where,
+        )
+
+
+def _write(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write the files of the whole batch, each of them whole or not at all."""
+    with tempfile.TemporaryDirectory(prefix=".part-", dir=folder) as part:
+        for name, content in files.items():
+            (Path(part) / name).write_bytes(content)
+        for name in files:
+            os.replace(Path(part) / name, folder / name)
+
+
+@contextlib.contextmanager
+def _progress(count: int, done: int) -> Iterator[Callable[[str], None]]:
+    """Show on a terminal how many campaigns are done; print what fails as it does.
+
+    Yields
+    ------
+    callable
+        Counts one more; is given why it failed, or "".
+    """
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
+
+    bar = Progress(
+        "Campaigns", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(),
+        console=Console(stderr=True), disable=not sys.stderr.isatty(), transient=True,
+    )
+    with bar:
+        task = bar.add_task("", total=count, completed=done)
+
+        def tell(error: str) -> None:
+            bar.advance(task)
+            if error:
+                line = "inerter: " + printable(error, longest=1900)
+                if bar.disable:
+                    print(line, file=sys.stderr)
+                else:
+                    bar.console.print(line, markup=False, highlight=False)
+
+        yield tell

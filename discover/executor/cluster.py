@@ -1,0 +1,131 @@
+"""Work over the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from threadpoolctl import threadpool_limits
+
+from discover._version import __version__
+from discover.executor.interface import Lost, R, T
+from models.checks import InputError
+
+_PATIENCE = 10.0  # s, for the scheduler and for a first worker
+_one_at_a_time = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """Does the items on a cluster, whose scheduler does those of lost workers again."""
+
+    client: Any
+    """Of `distributed`."""
+    address: str
+    """As given."""
+
+    def finished(
+        self, function: Callable[[T], R], items: Sequence[T]
+    ) -> Iterator[tuple[int, R | Lost]]:
+        """Yield each item's place and result as they are done; see `Executor`."""
+        from distributed import KilledWorker, as_completed
+
+        futures = {
+            self.client.submit(_alone, function, item, pure=False): place
+            for place, item in enumerate(items)
+        }
+        with self.client.as_current():
+            completed = as_completed(list(futures))
+        try:
+            for future in completed:
+                place = futures[future]
+                error = future.exception() if future.status == "error" else None
+                if isinstance(error, KilledWorker):
+                    yield place, Lost("its worker died each time, as where memory runs out")
+                elif error is not None:
+                    raise error
+                elif future.status == "finished":
+                    yield place, future.result()
+                else:
+                    raise _gone(self.address)
+                del futures[future]  # the cluster forgets it
+        except (OSError, TimeoutError, asyncio.CancelledError):
+            raise _gone(self.address) from None
+        finally:
+            if futures and self.client.status == "running":
+                self.client.cancel(list(futures))
+
+
+def _alone(function: Callable[[T], R], item: T) -> R:
+    """Do an item on a worker: pictures and limits on threads are the whole process's."""
+    with _one_at_a_time, threadpool_limits(1):
+        return function(item)
+
+
+@contextmanager
+def on_cluster(address: str) -> Iterator[Cluster]:
+    """Yield the executor of a cluster.
+
+    Parameters
+    ----------
+    address : str
+        Of its scheduler.
+
+    Raises
+    ------
+    InputError
+        Where `distributed` is not installed, the scheduler can't be reached, no worker comes, or
+        one has another version of this package.
+    """
+    where = f"--cluster {address}"
+    try:
+        from distributed import Client
+    except ImportError:
+        extra = "pip install 'inerter-discovery[distributed]'"
+        raise InputError(
+            "the package distributed", expected=f"installed ({extra})", found="none", where=where
+        ) from None
+    # It tells what is wrong in many lines; here it is one.
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    try:
+        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, TimeoutError, ValueError) as error:
+        reason = str(error).strip().splitlines()[0] if str(error).strip() else "no answer"
+        raise InputError("scheduler", expected="reachable", found=reason, where=where) from None
+    try:
+        _check_workers(client, where)
+        yield Cluster(client, address)
+    finally:
+        client.close()
+
+
+def _check_workers(client: Any, where: str) -> None:
+    """Raise where there are no workers, or such as would give other answers."""
+    try:
+        client.wait_for_workers(1, timeout=_PATIENCE)
+    except TimeoutError:
+        raise InputError("workers", expected="at least one", found="none", where=where) from None
+    wanted = f"with inerter-discovery {__version__} installed"
+    try:
+        versions = client.run(_version)
+    except ImportError as error:
+        raise InputError("workers", expected=wanted, found=str(error), where=where) from None
+    other = sorted(set(versions.values()) - {__version__})
+    if other:
+        raise InputError("workers", expected=wanted, found=f"one with {other[0]}", where=where)
+
+
+def _version() -> str:
+    return __version__
+
+
+def _gone(address: str) -> InputError:
+    return InputError(
+        "scheduler", expected="there until the work is done", found="gone",
+        where=f"--cluster {address}",
+    )
