@@ -5,6 +5,7 @@ import shlex
 import shutil
 import subprocess
 import tomllib
+from glob import glob
 from pathlib import Path
 
 import matplotlib
@@ -106,7 +107,8 @@ def run_shell(text, capsys):
             continue
         capsys.readouterr()
         if command.startswith("inerter "):
-            assert main(shlex.split(command)[1:]) == 0, (command, capsys.readouterr().err)
+            words = [sorted(glob(w)) if "*" in w else [w] for w in shlex.split(command)[1:]]
+            assert main(sum(words, [])) == 0, (command, capsys.readouterr().err)
             yield command, capsys.readouterr().out
         else:
             done = subprocess.run(command, shell=True, check=True, capture_output=True, text=True)
@@ -130,6 +132,10 @@ def test_every_block_of_a_page_runs_and_prints_what_is_shown(
         if page.name != "tutorial.md":
             (tmp_path / name).parent.mkdir(exist_ok=True)
             shutil.copytree(records, tmp_path / name)
+    if "inerter init my-records" in page.read_text(encoding="utf-8"):
+        (tmp_path / "my-records" / "campaign.toml").unlink()
+    (tmp_path / "more").mkdir()
+    shutil.copy(next(records.glob("*.csv")), tmp_path / "more")
     (tmp_path / "data").symlink_to(ROOT / "data")
     names, before = {}, ""
     for language, text in blocks(page):
