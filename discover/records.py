@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from os import PathLike
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from models.checks import Array, InputError
+from models.checks import Array, InputError, finite_array, shown
 from models.device import Device
 
 GAP = 1.5
@@ -42,12 +43,24 @@ class Finding:
         return result
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Record:
     """One measured record, in SI units.
 
     A sine test is fitted at the times at which it was measured, which may jitter and lack samples.
-    What needs equal steps takes `even`.
+    What needs equal steps takes `even`. Columns may be anything that numpy takes for an array of
+    numbers (a pandas Series, a list); they are kept as read-only views.
+
+    Raises
+    ------
+    InputError
+        Where columns differ in length or hold what is no finite number, or time does not rise.
+
+    Examples
+    --------
+    >>> t = np.arange(1000) / 500
+    >>> Record("1hz.csv", t, 800 * np.cos(6.28 * t), 0.01 * np.sin(6.28 * t))
+    <Record '1hz.csv': 1000 samples, 1.998 s, force up to 800 N, displacement up to 0.01 m>
     """
 
     file: str
@@ -77,18 +90,33 @@ class Record:
 
     def __post_init__(self) -> None:
         """Reject columns of unequal length and times that do not rise, and freeze the arrays."""
-        size = self.time.size
         for name in ("time", *_COLUMNS):
-            column = getattr(self, name)
-            if column is None:
-                continue
-            if column.shape != (size,):
-                raise InputError(
-                    name, expected=f"of shape ({size},)", found=f"{column.shape}", where=self.file
-                )
-            column.flags.writeable = False
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, self._column(name))
+        size = self.time.size
         if size > 1 and not np.diff(self.time).min() > 0.0:
             raise InputError("time", expected="rising", found="steps back or none", where=self.file)
+
+    def _column(self, name: str) -> Array:
+        """Return a column that nobody can change through the record."""
+        column = finite_array(name, getattr(self, name), ndim=1, where=self.file).view()
+        size = np.size(self.time)
+        if column.shape != (size,):
+            raise InputError(
+                name, expected=f"of shape ({size},)", found=f"{column.shape}", where=self.file
+            )
+        column.flags.writeable = False
+        return column
+
+    def __repr__(self) -> str:
+        """Return the record's name, length and sizes in a line."""
+        told = [f"{self.time.size} samples, {np.ptp(self.time):.4g} s"]
+        told.append(f"force up to {np.abs(self.force).max():.4g} N")
+        if self.displacement is not None:
+            told.append(f"displacement up to {np.abs(self.displacement).max():.4g} m")
+        if self.held_out:
+            told.append("held out")
+        return f"<Record {self.file!r}: {', '.join(told)}>"
 
     @property
     def gaps(self) -> int:
@@ -158,9 +186,12 @@ class CarriedSystem:
     """"base_acceleration" or "applied_force": the column that drives it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Campaign:
-    """A folder of records with what its ``campaign.toml`` says of them."""
+    """Records of one device: of a folder with its ``campaign.toml``, or from memory.
+
+    `discover.read_campaign` reads one, `from_frames` makes one.
+    """
 
     title: str
     """As given by the user."""
@@ -188,3 +219,101 @@ class Campaign:
     def held_out(self) -> tuple[Record, ...]:
         """Records that are only predicted."""
         return tuple(r for r in self.records if r.held_out)
+
+    @classmethod
+    def from_frames(
+        cls,
+        frames: Mapping[str, Any],
+        *,
+        units: Mapping[str, str] | None = None,
+        columns: Mapping[str, str] | None = None,
+        device: Device | str | Mapping[str, Any] | None = None,
+        held_out: Collection[str] = (),
+        sampling_rate: float | None = None,
+        title: str = "",
+    ) -> Campaign:
+        """Return a campaign of tables that are in memory.
+
+        Parameters
+        ----------
+        frames : mapping of str to table
+            A record's name, and its samples: a pandas or polars frame, an xarray data set, or a
+            mapping of column names to arrays (N,). Columns are ``time``, ``displacement`` and
+            ``force``, and where measured ``velocity``, ``acceleration``, ``temperature``,
+            ``base_acceleration``, ``applied_force``. A pandas index with a name is a column too;
+            time stamps count in seconds.
+        units : mapping of str to str, optional
+            Units by these names, as ``{"force": "kN"}``. A header may carry its own, as
+            ``force [kN]``; where neither does, SI is taken and a finding says so.
+        columns : mapping of str to str, optional
+            Headers by these names, where they differ: ``{"force": "Load cell"}``.
+        device : Device, str or mapping, optional
+            Geometry and fluid: a `models.device.Device`, a preset's name, or the ``[device]``
+            table of a ``campaign.toml`` as a mapping. Without it no Dean number is told.
+        held_out : collection of str
+            Records that are predicted and never fitted.
+        sampling_rate : float, optional
+            Hz, of frames without a time.
+        title : str
+            Shown with every answer.
+
+        Returns
+        -------
+        Campaign
+            In SI, with what had to be mended in its ``findings``. The frames are not changed.
+
+        Raises
+        ------
+        InputError
+            Where a column is missing or can't be worked on, with the record's name.
+
+        Examples
+        --------
+        >>> t = np.arange(2000) / 500
+        >>> frame = {"time": t, "displacement": 10 * np.sin(7 * t), "force": 0.8 * np.cos(7 * t)}
+        >>> units = {"time": "s", "displacement": "mm", "force": "kN"}
+        >>> Campaign.from_frames({"slow": frame}, units=units)
+        <Campaign 'records in memory': 1 record>
+        """
+        # It stands above the values: what is in a file and in memory is read by the same code.
+        from discover.readers.frames import campaign_from_frames
+
+        return campaign_from_frames(
+            frames, units=units, columns=columns, device=device, held_out=held_out,
+            sampling_rate=sampling_rate, title=title,
+        )  # fmt: skip
+
+    def __repr__(self) -> str:
+        """Return the title and what is in it, in a line."""
+        count = len(self.records)
+        told = f"{count} record{'' if count == 1 else 's'}"
+        if self.held_out:
+            told += f" ({len(self.held_out)} held out)"
+        if self.device is not None:
+            told += f" of {self.device.name or 'a device with geometry'}"
+        worst = [f for f in self.findings if f.level != "note"]
+        if worst:
+            told += f", {len(worst)} warning{'' if len(worst) == 1 else 's'}"
+        return f"<Campaign {shown(self.title)}: {told}>"
+
+
+def checked_campaign(given: object) -> Campaign:
+    """Return a campaign, or raise `InputError` that says how to make one of what was given.
+
+    Examples
+    --------
+    >>> checked_campaign("lab")
+    Traceback (most recent call last):
+        ...
+    models.checks.InputError: campaign must be a Campaign: discover.read_campaign('lab') reads ...
+    """
+    if isinstance(given, Campaign):
+        return given
+    if isinstance(given, str | PathLike):
+        advice, found = f"discover.read_campaign({str(given)!r}) reads one", "a path"
+    elif isinstance(given, Record):
+        advice, found = "discover.Campaign('title', (record,)) makes one", "a Record"
+    else:
+        advice = "discover.Campaign.from_frames({'name': table}, units={...}) makes one"
+        found = type(given).__name__
+    raise InputError("campaign", expected=f"a Campaign: {advice}", found=found)

@@ -6,13 +6,13 @@ import io
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from discover.header import document_header
 from discover.motion_fit import Observation, observe_all
-from discover.records import Campaign, Finding
+from discover.records import Campaign, Finding, checked_campaign
 from discover.rows import (
     Accuracy,
     accuracy,
@@ -21,9 +21,12 @@ from discover.rows import (
     noise_percent,
     pooled_percent,
 )
-from models.checks import Array, InputError
+from models.checks import Array, InputError, shown
 from models.constitutive import ForceModel, SegmentedModel
 from models.flow import dean_per_speed
+
+if TYPE_CHECKING:
+    import pandas
 
 Model = ForceModel | SegmentedModel
 
@@ -76,7 +79,7 @@ class ModelPrediction:
         }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ForceComparison:
     """Models beside a campaign."""
 
@@ -96,6 +99,59 @@ class ForceComparison:
         """Models, best first."""
         return tuple(sorted(self.models, key=lambda m: m.rank))
 
+    def __repr__(self) -> str:
+        """Return each model's error on all records, the best model first."""
+        told = []
+        for model in self.ranked:
+            error = model.relative_percent()
+            told.append(f"{model.name} " + ("no force" if error is None else f"{error:.3g} %"))
+        count = len(self.models[0].records)
+        return f"<Forces on {count} records of {shown(self.title)}, error: {', '.join(told)}>"
+
+    def to_frame(self) -> pandas.DataFrame:
+        """Return the errors as a table, a row for every model and record.
+
+        Columns are model, record, held_out, error_percent (root mean square over the force's
+        peak), relative_error_percent (100 ||e||/||F||), noise_percent.
+        """
+        import pandas
+
+        rows = []
+        for model in self.models:
+            for record in model.records:
+                entry = record.to_dict()
+                rows.append({
+                    "model": model.name, "record": entry["file"], "held_out": entry["held_out"],
+                    "error_percent": entry["error_percent"],
+                    "relative_error_percent": entry["relative_error_percent"],
+                    "noise_percent": entry["noise_percent"],
+                })  # fmt: skip
+        return pandas.DataFrame(rows)
+
+    def forces(self) -> dict[str, pandas.DataFrame]:
+        """Return the samples by record: time, displacement, velocity, force, each model's force.
+
+        Columns are named with their SI units, as ``force [N]``; a model's is its own name.
+        """
+        import pandas
+
+        return {
+            r.accuracy.observation.file: pandas.DataFrame(self._columns(index))
+            for index, r in enumerate(self.models[0].records)
+        }
+
+    def _columns(self, index: int) -> dict[str, Array]:
+        observation = self.models[0].records[index].accuracy.observation
+        columns = {
+            "time [s]": observation.time,
+            "displacement [m]": observation.at_samples(observation.motion.displacement),
+            "velocity [m/s]": observation.at_samples(observation.motion.velocity),
+            "force [N]": observation.measured,
+        }
+        for model in self.models:
+            columns[f"{model.name} [N]"] = model.records[index].accuracy.model_force
+        return columns
+
     def to_dict(self) -> dict[str, Any]:
         """Return the document ``simulation.json``."""
         accuracies = [r.accuracy for r in self.models[0].records]
@@ -113,16 +169,8 @@ class ForceComparison:
         """Return one CSV a record, by file name: motion, measured force, each model's force."""
         tables: dict[str, str] = {}
         for index, first in enumerate(self.models[0].records):
-            observation = first.accuracy.observation
-            columns = {
-                "time [s]": observation.time,
-                "displacement [m]": observation.at_samples(observation.motion.displacement),
-                "velocity [m/s]": observation.at_samples(observation.motion.velocity),
-                "force [N]": observation.measured,
-            }
-            for model in self.models:
-                columns[f"{model.name} [N]"] = model.records[index].accuracy.model_force
-            tables[_table_name(observation.file, tables)] = _csv(columns)
+            name = _table_name(first.accuracy.observation.file, tables)
+            tables[name] = _csv(self._columns(index))
         return tables
 
 
@@ -149,6 +197,7 @@ def simulate_forces(
     """
     if not models:
         raise InputError("models", expected="at least one", found="none")
+    checked_campaign(campaign)
     observations = observe_all(campaign.records, jobs)
     predicted = {
         name: tuple(predict_record(o, model) for o in observations)

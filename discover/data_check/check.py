@@ -13,7 +13,7 @@ from discover.data_check.separation import expected_pairs, inseparable_pairs
 from discover.data_check.sizes import size_findings
 from discover.motion_fit import observe_all
 from discover.record_checks import RecordCheck, check_records
-from discover.records import Campaign, Finding
+from discover.records import Campaign, Finding, checked_campaign
 from discover.rows import RecordRows, record_rows
 
 _LEVELS = ("error", "warning", "note")
@@ -41,7 +41,7 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
     InputError
         Where a record can't be used.
     """
-    judged = check_records(campaign)
+    judged = check_records(checked_campaign(campaign))
     found = [*size_findings(campaign, judged.records), *_plan_findings(judged.records)]
     findings = tuple(sorted((*judged.findings, *found), key=lambda f: _LEVELS.index(f.level)))
     rows: tuple[RecordRows, ...] = ()

@@ -168,6 +168,16 @@ def _shapes(identifier: str, scales: Scales) -> list[dict[str, float]]:
     return found[step // 2 :: step] or found[:1]
 
 
+def _check_model(given: object) -> None:
+    if isinstance(given, str | ForceModel | SegmentedModel):
+        return
+    near = f": `{type(given).__name__.lower()}.model` is one" if hasattr(given, "model") else ""
+    raise InputError(
+        "model", expected="'fit:TERM,...', 'foim', 'sfoim' or a model" + near,
+        found=type(given).__name__,
+    )  # fmt: skip
+
+
 def prepare_baseline(
     observations: Sequence[Observation],
     model: str | ForceModel | SegmentedModel,
@@ -193,8 +203,9 @@ def prepare_baseline(
     Raises
     ------
     InputError
-        For terms that are not in the vocabulary.
+        For terms that are not in the vocabulary, or where it is no model.
     """
+    _check_model(model)
     rows = tuple(record_rows(o) for o in observations)
     free_rows = [r for r in rows if not r.observation.held_out]
     first = model == "sfoim"

@@ -20,6 +20,8 @@ from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 if TYPE_CHECKING:
     import pandas
 
+    from discover.plots.gap_plots import GapPlots
+
 Interval = tuple[float, float]
 
 
@@ -182,6 +184,14 @@ class Gap:
     """The mended model."""
     figure_data: GapFigureData
     """For pictures."""
+
+    @property
+    def plot(self) -> GapPlots:
+        """The search's pictures: ``gap.plot.records()``, ``rounds()``, ``loops()``, ..."""
+        # Drawing stands above the values and takes a moment to load.
+        from discover.plots.gap_plots import GapPlots
+
+        return GapPlots(self.to_dict(), self.figure_data)
 
     def __repr__(self) -> str:
         """Return the campaign's title and the verdict."""

@@ -21,7 +21,7 @@ from discover.posterior.grow import Step
 from discover.posterior.model import Number
 from discover.posterior.spread import Spread, spread_of
 from discover.record_checks import data_errors
-from discover.records import Campaign
+from discover.records import Campaign, checked_campaign
 from discover.rows import Unexplained, alike_percent, force_rows, noise_percent, unexplained
 from models.checks import InputError, one_of
 from models.constitutive import Band, FittedTerm, ForceModel, SegmentedModel
@@ -75,8 +75,16 @@ def close_gap(
     ------
     InputError
         Where no record may be fitted, or for an unknown effect.
+
+    Examples
+    --------
+    >>> import discover
+    >>> campaign = discover.read_campaign("data/hidden-effect")
+    >>> gap = close_gap(campaign, "fit:inertia,viscous-damping", effects=["force-offset"])
+    >>> round(gap.to_dict()["noise_percent"], 1)
+    1.1
     """
-    if not campaign.fitted:
+    if not checked_campaign(campaign).fitted:
         raise InputError(
             "records", expected="at least one that is not held out", found="none",
             where=campaign.source,

@@ -5,10 +5,12 @@
 
 from typing import TYPE_CHECKING, Any
 
+from discover.library.column import Column
+
 if TYPE_CHECKING:
     from discover.library.feature_library import InerterLibrary
 
-__all__ = ["InerterLibrary"]
+__all__ = ["Column", "InerterLibrary"]
 
 
 def __getattr__(name: str) -> Any:

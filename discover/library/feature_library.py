@@ -9,9 +9,11 @@ from typing import Any, Self, get_args
 import numpy as np
 from pysindy.feature_library.base import BaseFeatureLibrary, x_sequence_or_item
 from pysindy.utils import AxesArray, comprehend_axes
+from sklearn.base import clone
 from sklearn.utils.validation import check_is_fitted
 
 from discover.library.column import PLAIN, Column
+from discover.library.transition import fitted_transition
 from models.checks import Array, InputError, finite_array, number, one_of
 from models.motion import Motion, SampledKind, sampled_motion
 from models.terms import find_term
@@ -19,6 +21,7 @@ from models.terms import find_term
 DEFAULT_TERMS = (*PLAIN, "coulomb-friction")
 """Terms without a shape that has to be given."""
 _FRACTIONAL, _POWER = "fractional-derivative", "power-law-damping"
+_FRICTION = "coulomb-friction"
 _FEWEST = 8  # samples a trajectory needs
 
 Namer = Callable[[str, str, str, Mapping[str, float]], str]
@@ -70,6 +73,10 @@ class InerterLibrary(BaseFeatureLibrary):  # type: ignore[misc]
     kind : str
         Operator: "caputo" (from rest), "riemann-liouville", "grunwald-letnikov", or "weyl" (whole
         periods of a steady state).
+    transition_speed : float
+        Speed over which dry friction reverses, m/s: it is then tanh(v/v_t) in place of sign(v).
+        0 for a jump. Measured friction never jumps, and the corners of a jump bend the other
+        coefficients; `with_fitted_transition` finds the speed.
 
     Attributes
     ----------
@@ -94,6 +101,19 @@ class InerterLibrary(BaseFeatureLibrary):  # type: ignore[misc]
     >>> model = model.fit(x[:, None], t=t, x_dot=force, feature_names=["x"])
     >>> model.print(lhs=["F"])
     F =  100.000 x'' +  20.000 D^0.5 x
+
+    Friction that reverses over a speed, which is fitted:
+
+    >>> v = 2 * np.pi * (0.01 * np.cos(2 * np.pi * t) - 0.012 * np.sin(6 * np.pi * t))
+    >>> force = (2500.0 * v + 400.0 * np.tanh(v / 0.01))[:, None]
+    >>> terms = ("viscous-damping", "coulomb-friction")
+    >>> library = InerterLibrary(1 / 400, terms=terms, kind="weyl")
+    >>> library = library.with_fitted_transition(x[:, None], force)
+    >>> round(library.transition_speed, 4)
+    0.01
+    >>> model = ps.SINDy(feature_library=library, optimizer=BestSubset(max_terms=2))
+    >>> model.fit(x[:, None], t=t, x_dot=force, feature_names=["x"]).print(lhs=["F"], precision=0)
+    F =  2500 x' +  400 tanh(x'/0.01)
     """
 
     def __init__(
@@ -104,12 +124,14 @@ class InerterLibrary(BaseFeatureLibrary):  # type: ignore[misc]
         orders: Sequence[float] = (),
         exponents: Sequence[float] = (),
         kind: SampledKind = "caputo",
+        transition_speed: float = 0.0,
     ) -> None:
         self.dt = dt
         self.terms = terms
         self.orders = orders
         self.exponents = exponents
         self.kind = kind
+        self.transition_speed = transition_speed
 
     @property
     def columns(self) -> tuple[Column, ...]:
@@ -124,7 +146,9 @@ class InerterLibrary(BaseFeatureLibrary):  # type: ignore[misc]
         where = "InerterLibrary"
         if isinstance(self.terms, str):
             raise InputError("terms", expected="a sequence of ids", found=self.terms, where=where)
-        chosen = [_checked_column(t) for t in self.terms]
+        slow = number("transition_speed", self.transition_speed, at_least=0.0, where=where)
+        friction = Column(_FRICTION, (("transition_speed", slow),))
+        chosen = [_checked_column(friction if t == _FRICTION else t) for t in self.terms]
         for order in np.atleast_1d(finite_array("orders", self.orders, min_size=0, where=where)):
             value = number("order", order, at_least=0.0, at_most=2.0, where=where)
             chosen.append(Column(_FRACTIONAL, (("order", value),)))
@@ -204,6 +228,62 @@ class InerterLibrary(BaseFeatureLibrary):  # type: ignore[misc]
             features = self._features(values, dt)
             result.append(AxesArray(features, comprehend_axes(features)))
         return result
+
+    def with_fitted_transition(
+        self, x: Array | Sequence[Array], force: Array | Sequence[Array]
+    ) -> InerterLibrary:
+        """Return this library with the transition speed that fits measured force best.
+
+        All its features are fitted beside the friction, so that none takes over what another has.
+
+        Parameters
+        ----------
+        x : array_like, shape (N, C), or list of them
+            As in `fit`.
+        force : array_like, shape (N,) or (N, 1), or list of them
+            Measured force, N.
+
+        Returns
+        -------
+        InerterLibrary
+            A new one.
+
+        Raises
+        ------
+        InputError
+            Where "coulomb-friction" is not among its terms, or shapes do not agree.
+        """
+        where = "InerterLibrary"
+        if _FRICTION not in self.terms:
+            raise InputError(
+                "terms", expected=f"with {_FRICTION}", found=f"{self.terms}", where=where
+            )
+        motions = [np.asarray(m) for m in (x if isinstance(x, list | tuple) else [x])]
+        forces = [
+            finite_array("force", f, where=where).reshape(-1)
+            for f in (force if isinstance(force, list | tuple) else [force])
+        ]
+        if [len(m) for m in motions] != [len(f) for f in forces]:
+            raise InputError(
+                "force", expected=f"of lengths {[len(m) for m in motions]}",
+                found=f"{[len(f) for f in forces]}", where=where,
+            )  # fmt: skip
+        speeds = [f[:, 0] for f in self._only(motions, ("viscous-damping",), (), ())]
+        rest = tuple(t for t in self.terms if t != _FRICTION)
+        others = [np.empty((len(m), 0)) for m in motions]
+        if rest or len(self.orders) or len(self.exponents):
+            others = self._only(motions, rest, self.orders, self.exponents)
+        found = fitted_transition(speeds, others, np.concatenate(forces))
+        result: InerterLibrary = clone(self).set_params(transition_speed=found)
+        return result
+
+    def _only(
+        self, motions: list[Array], terms: Sequence[str | Column], orders: Sequence[float],
+        exponents: Sequence[float],
+    ) -> list[Array]:
+        """Return some of the features of each trajectory."""
+        library = clone(self).set_params(terms=terms, orders=orders, exponents=exponents)
+        return [np.asarray(f) for f in library.fit(motions).transform(motions)]
 
     def get_feature_names(self, input_features: Sequence[str] | None = None) -> list[str]:
         """Return a readable name of each feature.

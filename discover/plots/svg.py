@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter
 
-from discover.plots.picture import Picture
+from discover.plots.drawing import Drawing
 
 _FONTS = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 _SERIES = "series:"
@@ -28,7 +28,7 @@ def series(artists: Artist | Iterable[Artist], name: str) -> None:
         artist.set_gid(_SERIES + name)
 
 
-def to_svg(figure: Figure, *, name: str, title: str) -> Picture:
+def to_svg(figure: Figure, *, name: str, title: str) -> Drawing:
     """Return `figure` as one ``<svg>`` element that can stand in a page beside others.
 
     Parameters
@@ -69,7 +69,7 @@ def to_svg(figure: Figure, *, name: str, title: str) -> Picture:
     if read:
         attributes += f" data-axes={quoteattr(json.dumps(read, separators=(',', ':')))}"
     plain = plain.replace("<svg", f"<svg {attributes}", 1)
-    return Picture(plain + f"<title>{escape(title)}</title>" + text[len(opening) :], figure)
+    return Drawing(plain + f"<title>{escape(title)}</title>" + text[len(opening) :], figure)
 
 
 def _readable(figure: Figure) -> list[dict[str, Any]]:

@@ -130,7 +130,7 @@ def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Find
         system=system,
         content_hash=digest.hexdigest(),
         source=source,
-        findings=_merged(findings, len(records)),
+        findings=merged(findings, len(records)),
     )
 
 
@@ -288,8 +288,8 @@ def _check_used(
             )
 
 
-def _merged(findings: list[Finding], count: int) -> tuple[Finding, ...]:
-    """Return the findings with one that all records share said once."""
+def merged(findings: list[Finding], count: int) -> tuple[Finding, ...]:
+    """Return the findings, with one that all records share said once."""
     same: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
         same.setdefault((finding.level, finding.text), []).append(finding)

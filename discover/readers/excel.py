@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from discover.readers.content import check_unpacked, content_error, optional_package
 from discover.readers.layout import Layout, Rows, find_tables
@@ -29,6 +28,8 @@ def open_excel(data: bytes, name: str) -> Book:
     InputError
         Where it is no workbook, holds no table, or openpyxl is missing.
     """
+    import pandas as pd  # loaded here: few campaigns are workbooks
+
     optional_package("openpyxl", extra="xlsx", name=name)
     check_unpacked(data, "an Excel workbook", name)
     try:

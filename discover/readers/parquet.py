@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as compute
 import pyarrow.parquet as parquet
 
+from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
 from discover.readers.source import Book, Source, single
 from models.checks import Array, InputError
@@ -80,4 +81,4 @@ def _from_first(column: Any, *, always: bool = False) -> Any:
 
 
 def _doubles(column: Any) -> Array:
-    return np.array(column.cast(pa.float64(), safe=False).to_numpy(), dtype=np.float64)
+    return doubles(column.cast(pa.float64(), safe=False))

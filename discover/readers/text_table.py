@@ -9,12 +9,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 import pyarrow as pa
 import pyarrow.csv as pa_csv
 
+from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
 from discover.readers.layout import Layout, Rows, find_tables
+from discover.readers.line_kinds import line_kinds
 from discover.readers.numerals import value
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import Book, Source
@@ -80,8 +81,10 @@ def open_text(data: bytes, name: str) -> Book:
             data = data.decode("utf-16").encode()
         except UnicodeDecodeError as error:
             raise content_error("text in utf-16", str(error.reason), name) from None
-    data = data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    if not data.strip():
+    data = data.removeprefix(b"\xef\xbb\xbf")
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    if not data or data.isspace():
         raise content_error("a header line and samples", "an empty file", name)
     if b"\0" in data[:4096]:
         raise content_error("text", "binary data", name)
@@ -115,16 +118,8 @@ def _lines(data: bytes, name: str) -> tuple[_Text, Rows]:
         ends = np.r_[ends, codes.size]
     starts = np.r_[0, ends]
 
-    def has(characters: bytes) -> np.ndarray:
-        wanted = np.zeros(256, dtype=np.uint8)
-        wanted[np.frombuffer(characters, dtype=np.uint8)] = 1
-        return np.add.reduceat(wanted[codes], starts[:-1], dtype=np.int32)
-
-    length = np.diff(starts)
-    digits = has(b"0123456789")
-    numeric = (has(b'0123456789+-.,;eE \t"\n') == length) & (digits > 0)
-    blank = has(b' \t,;\n"') == length
-    comment = np.zeros(length.size, dtype=bool)
+    numeric, blank = line_kinds(data, starts)
+    comment = np.zeros(numeric.size, dtype=bool)
     for row in np.flatnonzero(~numeric & ~blank):
         comment[row] = data[starts[row] : starts[row] + 200].lstrip().startswith(_MARKS)
     filled = np.flatnonzero(~blank & ~comment)
@@ -201,8 +196,8 @@ def _plain_layout(text: _Text, rows: Rows, name: str) -> Layout:
 
 
 def _source(text: _Text, rows: Rows, layout: Layout, name: str, part: str) -> Source:
-    body = text.data[text.starts[layout.first] : text.starts[layout.last]]
-    decimal = "," if text.delimiter != "," and b"," in body[:2000] else "."
+    body = memoryview(text.data)[text.starts[layout.first] : text.starts[layout.last]]
+    decimal = "," if text.delimiter != "," and b"," in bytes(body[:2000]) else "."
     beyond = text.fields(layout.first)[len(layout.headers) :]  # empty after a delimiter at the end
     headers = layout.headers + ("",) * (0 if any(beyond) else len(beyond))
     width = len(headers)
@@ -230,7 +225,7 @@ def _samples(rows: Rows, layout: Layout) -> Iterator[int]:
 
 
 def _read_fast(
-    body: bytes, width: int, indices: Sequence[int], delimiter: str, decimal: str
+    body: memoryview, width: int, indices: Sequence[int], delimiter: str, decimal: str
 ) -> list[Array] | None:
     """Return the columns by a library, or None where the table is not regular."""
     names = [f"c{i}" for i in range(width)]
@@ -239,7 +234,7 @@ def _read_fast(
         return _read_blanks(body, names, wanted, decimal)
     try:
         table = pa_csv.read_csv(
-            io.BytesIO(body),
+            pa.BufferReader(body),
             read_options=pa_csv.ReadOptions(column_names=names, use_threads=len(body) > _LARGE),
             parse_options=pa_csv.ParseOptions(delimiter=delimiter),
             convert_options=pa_csv.ConvertOptions(
@@ -250,12 +245,14 @@ def _read_fast(
         )
     except (pa.ArrowException, OSError):
         return None
-    return [np.array(table.column(key).to_numpy(), dtype=np.float64) for key in wanted]
+    return [doubles(table.column(key)) for key in wanted]
 
 
 def _read_blanks(
-    body: bytes, names: list[str], wanted: list[str], decimal: str
+    body: memoryview, names: list[str], wanted: list[str], decimal: str
 ) -> list[Array] | None:
+    import pandas as pd  # loaded here: only tables parted by blanks need it
+
     try:
         table = pd.read_csv(
             io.BytesIO(body), sep=r"\s+", header=None, names=names, usecols=wanted, decimal=decimal,

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import csd, welch
 
 from discover.motion_fit import Observation
 from discover.residual_data import Response
@@ -27,6 +26,8 @@ Complex = NDArray[np.complex128]
 
 def response(accuracy: Accuracy) -> Response:
     """Return what the model of `accuracy` leaves of its record, for pictures."""
+    from scipy.signal import welch  # loaded where used: it takes its time
+
     o = accuracy.observation
     place = o.at_samples(o.motion.displacement)
     speed = o.at_samples(o.motion.velocity)
@@ -101,6 +102,8 @@ def _over_band(
     even: Array, step: float, size: int, inside: NDArray[np.bool_]
 ) -> tuple[Array, Complex, Array]:
     """Return the dynamic stiffness and coherence of a record that holds many frequencies."""
+    from scipy.signal import csd, welch
+
     place, measured, model = even[:3]
     frequency, along = welch(place, 1.0 / step, nperseg=size)
     _, power = welch(measured, 1.0 / step, nperseg=size)

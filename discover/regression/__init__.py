@@ -1,4 +1,4 @@
-"""Exact best subsets of columns, as a function and as a pysindy optimizer.
+"""Exact best subsets of columns, as a function, for pysindy and for scikit-learn.
 
 The names below load when they are asked for: pysindy takes a second to import.
 """
@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from discover.regression.best_subset import Subset, SubsetPath, best_subsets
     from discover.regression.optimizer import BestSubset
+    from discover.regression.regressor import InerterRegressor
 
-__all__ = ["BestSubset", "Subset", "SubsetPath", "best_subsets"]
+__all__ = ["BestSubset", "InerterRegressor", "Subset", "SubsetPath", "best_subsets"]
 _HOME = {
     "BestSubset": "optimizer",
+    "InerterRegressor": "regressor",
     "Subset": "best_subset",
     "SubsetPath": "best_subset",
     "best_subsets": "best_subset",

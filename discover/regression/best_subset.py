@@ -16,11 +16,11 @@ from dataclasses import dataclass
 from math import comb
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from discover.regression.least_squares import reduce_rows, solve
 from models.checks import Array, InputError, finite_array
+from models.compiled import compiled
 
 _ROWS_AT_ONCE = 4096
 _DEPENDENT = 1e-24  # squared length left of a unit column that the others make up
@@ -56,7 +56,7 @@ class SubsetPath:
         return self.sizes[size][0] if self.sizes[size] else None
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})  # type: ignore[untyped-decorator]
+@compiled(cache=True, nogil=True, fastmath={"reassoc", "contract"})
 def _search(  # pragma: no cover - compiled
     columns: Array,
     target: Array,

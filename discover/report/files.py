@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from discover.plots.picture import Picture
+from discover.plots.drawing import Drawing
 
 Entry = Mapping[str, Any]
 
@@ -32,7 +32,7 @@ def page_files(
     files: dict[str, str | bytes] = {"report.html": page}
     for name, svg in figures.items():
         files[f"figures/{name}.svg"] = str(svg)
-        if isinstance(svg, Picture):
+        if isinstance(svg, Drawing):
             files |= {f"figures/{name}.{kind}": svg.saved(kind) for kind in formats}
     return files
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal.windows import tukey
 
 from discover.motion_fit import Observation
 from discover.rows.force import force_at_samples
@@ -82,6 +81,8 @@ def _power(observation: Observation, signal: Array) -> float:
     """
     if observation.cutoff is None or observation.kind == "periodic":
         return float(np.mean(signal**2))
+    from scipy.signal.windows import tukey  # loaded here: sine tests do without
+
     taper = tukey(signal.size, _FADES)
     spectrum = np.abs(np.fft.rfft(signal * taper)) ** 2
     spectrum[1:] *= 2.0

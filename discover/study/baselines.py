@@ -18,7 +18,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from pysindy.optimizers import SR3, SSR, STLSQ
 
 from discover.figure_data import BaselineAnswer
 from discover.regression.least_squares import solve
@@ -112,6 +111,8 @@ Supports = Iterator[Array]
 
 
 def _stlsq(candidates: _Candidates) -> Supports:
+    from pysindy.optimizers import STLSQ  # loaded here: pictures of a study alone need it
+
     for ridge in _RIDGES:
         for threshold in _THRESHOLDS:
             model = STLSQ(threshold=threshold, alpha=ridge, max_iter=50, unbias=False)
@@ -119,6 +120,8 @@ def _stlsq(candidates: _Candidates) -> Supports:
 
 
 def _sr3(candidates: _Candidates) -> Supports:
+    from pysindy.optimizers import SR3
+
     # From its default start, least squares on all columns, collinear ones never come down.
     start = np.zeros((1, candidates.units.shape[1]))
     for relaxation in _RELAXATIONS:
@@ -134,6 +137,8 @@ def _sr3(candidates: _Candidates) -> Supports:
 
 
 def _ssr(candidates: _Candidates) -> Supports:
+    from pysindy.optimizers import SSR
+
     for ridge in _RIDGES:
         # kappa = 0 keeps off pysindy's own choice on the path, which fails on short ones.
         model = SSR(alpha=ridge, max_iter=candidates.units.shape[1], kappa=0.0, unbias=False)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from discover.bands.extras import Device
 from discover.motion_fit import Observation, observe_all
-from discover.records import Campaign, Finding
+from discover.records import Campaign, Finding, checked_campaign
 from discover.rows import RecordRows, record_rows
 from discover.study.options import StudyOptions
 from models.checks import InputError
@@ -39,7 +39,7 @@ def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
     InputError
         Where no record may be fitted, or a term can't be searched for in a study.
     """
-    if not campaign.fitted:
+    if not checked_campaign(campaign).fitted:
         raise InputError(
             "records", expected="at least one that is not held out", found="none",
             where=campaign.source,

@@ -14,14 +14,18 @@ from discover.document import json_text
 from discover.figure_data import StudyFigureData
 from discover.header import document_header
 from discover.next_test import NextTest
-from discover.records import Finding
+from discover.records import Campaign, Finding, Record, checked_campaign
 from discover.rows import Unexplained
+from discover.simulate import ForceComparison, simulate_forces
 from discover.study.verdict import headline, verdict_lines
 from discover.words import error_lines, interval, significant, term_name
+from models.checks import InputError
 from models.constitutive import FittedTerm, SegmentedModel
 
 if TYPE_CHECKING:
     import pandas
+
+    from discover.plots.study_plots import StudyPlots
 
 Interval = tuple[float, float]
 
@@ -223,7 +227,7 @@ class StudyBoundary:
 class Study:
     """The answer of a study.
 
-    A notebook shows it as its sentences and a table of terms.
+    A notebook shows it as its sentences, a table of terms and the map of the tests.
     """
 
     title: str
@@ -277,11 +281,48 @@ class Study:
             for t in band.terms
         ]
         header = ("band", "structure", "term", "coefficient", "95 % interval", "unit")
-        return answer_html(self.title, self._lines(), header, rows)
+        return answer_html(self.title, self._lines(), header, rows) + self._map()
+
+    def _map(self) -> str:
+        """Return the map of the tests, or nothing where there is none to draw."""
+        try:
+            return self.plot.map()._repr_html_()
+        except InputError:  # of a study from a file, or without sine tests
+            return ""
 
     def _lines(self) -> list[str]:
         document = self.to_dict()
         return [*error_lines(document), *verdict_lines(document)]
+
+    @property
+    def plot(self) -> StudyPlots:
+        """The study's pictures: ``study.plot.loops()``, ``map()``, ``errors()``, ..."""
+        # Drawing stands above the values and takes a moment to load.
+        from discover.plots.study_plots import StudyPlots
+
+        return StudyPlots(self.to_dict(), self.figure_data)
+
+    def predict(self, other: Campaign | Record) -> ForceComparison:
+        """Return the force of the study's model for other motion, beside the measured force.
+
+        Parameters
+        ----------
+        other : Campaign or Record
+            Records of the same device, in SI; a single one stands for a campaign of its own.
+
+        Returns
+        -------
+        ForceComparison
+            ``to_frame()`` has the errors by record (percent), ``forces()`` the samples (N).
+
+        Raises
+        ------
+        InputError
+            Where it is neither, or the model's bands lie on a Dean number and it has no device.
+        """
+        if isinstance(other, Record):
+            other = Campaign(other.file, (other,))
+        return simulate_forces(checked_campaign(other), {"study": self.model}, seed=self.seed)
 
     def summary(self) -> str:
         """Return the answer in plain sentences, a line each: what ``inerter discover`` prints."""

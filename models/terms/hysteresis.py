@@ -1,9 +1,9 @@
 """Hysteresis: friction that yields elastically before it slips, and so remembers the path."""
 
 import numpy as np
-from numba import njit
 
 from models.checks import Array
+from models.compiled import compiled
 from models.motion import Motion
 from models.terms.scales import Scales
 from models.terms.term import Parameter, Shape, Start, Term
@@ -13,7 +13,7 @@ _SLIDERS = 8
 _LEAST_HELD = 1e-9
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled(cache=True)
 def _stop(x: Array, limit: float, *, passes: int) -> Array:
     """Return an elastic slider's deflection over its limit, in [-1, 1]."""
     result = np.empty(x.size)
@@ -27,7 +27,7 @@ def _stop(x: Array, limit: float, *, passes: int) -> Array:
     return result
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled(cache=True)
 def _dahl(x: Array, limit: float, holds: Array, *, passes: int) -> Array:
     """Return Dahl's state: dz = (1 - z sign dx / hold) dx / limit, exact for each step."""
     result = np.empty(x.size)

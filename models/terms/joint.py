@@ -7,9 +7,9 @@ state.
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from models.checks import Array
+from models.compiled import compiled
 from models.motion import Motion
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
@@ -116,9 +116,7 @@ def _size(values: Array) -> float:
     return float(np.sqrt(values @ values / values.size))
 
 
-@njit(  # type: ignore[untyped-decorator]
-    cache=True, fastmath=True, error_model="numpy", nogil=True
-)
+@compiled(cache=True, fastmath=True, error_model="numpy", nogil=True)
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, spring: float, stiffness: float, damping: float, half: float,
@@ -236,7 +234,7 @@ def _step(
     return result
 
 
-@njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+@compiled(cache=True, inline="always")
 def _pushed(
     deep: float, closing: float, stiffness: float, damping: float, h: float
 ) -> tuple[float, float]:
@@ -263,7 +261,7 @@ def _pushed(
     return share * 0.5 * most, share
 
 
-@njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+@compiled(cache=True, inline="always")
 def _flanks(depth: float, half: float) -> tuple[float, float]:
     """Return how far both flanks are pressed in, and the slope of that; in widths, depth from 0.
 
@@ -282,7 +280,7 @@ def _flanks(depth: float, half: float) -> tuple[float, float]:
     return pressed, grown / (1.0 + grown) + other / (1.0 + other)
 
 
-@njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+@compiled(cache=True, inline="always")
 def _tanh(value: float) -> float:
     """Return the hyperbolic tangent to 2e-6 up to `_WIDE`, from its continued fraction."""
     s = value * value
@@ -291,7 +289,7 @@ def _tanh(value: float) -> float:
     return min(max(value * above / below, -1.0), 1.0)
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@compiled(cache=True, error_model="numpy")
 def _begin(
     before: Array, known: int, place: float, speed: float, place_now: float, speed_now: float
 ) -> int:

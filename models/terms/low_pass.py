@@ -1,8 +1,9 @@
 """What a channel's low-pass makes of a force: Butterworth's of some order, by its delay."""
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, cont2discrete, lfilter, residue
 
 from models.checks import Array
 from models.motion import Motion
@@ -10,7 +11,6 @@ from models.motion import Motion
 Lines = NDArray[np.complex128]
 _NODES = {1: 8, 2: 12, 3: 24, 4: 32}
 _NEGLIGIBLE = 1e-6  # weight
-_BUTTERWORTH = {order: butter(order, 1.0, analog=True)[1] for order in _NODES}
 _BILINEAR = {
     order: np.array([np.poly([1.0] * k + [-1.0] * (order - k)) for k in range(order, -1, -1)])
     for order in _NODES
@@ -41,6 +41,8 @@ def low_passed(
         return low_passed_cycle(force, motion.step, delay, order)
     if digital:
         return low_passed_samples(force, motion.step, delay, order)
+    from scipy.signal import cont2discrete  # loaded here: it takes a quarter of a second
+
     system = np.array([1.0]), _denominator(delay, order)
     top, bottom, _ = cont2discrete(system, motion.step, method="foh")  # lines between samples
     return _settled(force, top.ravel(), bottom)
@@ -59,6 +61,8 @@ def low_passed_samples(force: Array, step: float, delay: float, order: int = 1) 
 
 def _settled(force: Array, top: Array, bottom: Array) -> Array:
     """Return what a filter that passes what lasts makes of a force that began long ago."""
+    from scipy.signal import lfilter
+
     begun = np.cumsum((top - bottom)[:0:-1])[::-1]
     return np.asarray(lfilter(top, bottom, force, zi=force[0] * begun)[0])
 
@@ -74,22 +78,15 @@ def low_passed_lines(lines: Lines, size: int, step: float, delay: float, order: 
     return np.fft.irfft(lines / np.polyval(_denominator(delay, order), s), n=size)
 
 
+@cache
 def earlier(order: int) -> tuple[Array, Array]:
     """Return moments ago (M,) in delays, and weights (M,): their sum is what a low-pass passes.
 
     By Gauss and Laguerre's rule for its response to an impulse, which decays as exp(-t/delay) or
     faster.
     """
-    return _EARLIER[order]
+    from scipy.signal import residue
 
-
-def _denominator(delay: float, order: int) -> Array:
-    """Return the polynomial in s (rad/s) whose inverse the low-pass is."""
-    unscaled = _BUTTERWORTH[order]
-    return np.asarray(unscaled * (delay / unscaled[-2]) ** np.arange(order, -1.0, -1.0))
-
-
-def _moments(order: int) -> tuple[Array, Array]:
     residues, poles, _ = residue([1.0], _denominator(1.0, order))
     ago, weights = np.polynomial.laguerre.laggauss(_NODES[order])
     response = np.sum(residues * np.exp(np.outer(ago, poles + 1.0)), axis=1).real
@@ -98,4 +95,15 @@ def _moments(order: int) -> tuple[Array, Array]:
     return ago[used], weights[used]
 
 
-_EARLIER = {order: _moments(order) for order in _NODES}
+def _denominator(delay: float, order: int) -> Array:
+    """Return the polynomial in s (rad/s) whose inverse the low-pass is."""
+    unscaled = _butterworth(order)
+    return np.asarray(unscaled * (delay / unscaled[-2]) ** np.arange(order, -1.0, -1.0))
+
+
+@cache
+def _butterworth(order: int) -> Array:
+    """Return the polynomial of corner 1 rad/s."""
+    from scipy.signal import butter
+
+    return np.asarray(butter(order, 1.0, analog=True)[1])

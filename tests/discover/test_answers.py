@@ -1,6 +1,7 @@
 """What a notebook and a script see of an answer."""
 
 import json
+from xml.etree import ElementTree
 
 import pytest
 
@@ -88,3 +89,63 @@ def test_public_names_are_there_for_tab_completion():
     names = dir(discover)
     assert {"read_campaign", "run_study", "close_gap", "load_study", "StudyOptions"} <= set(names)
     assert all(getattr(discover, n) is not None for n in discover.__all__)
+
+
+def test_a_study_predicts_other_records_as_well_as_it_says(study, measured):
+    found = study.predict(measured)
+    (model,) = found.models
+    assert model.relative_percent(held_out=True) == pytest.approx(
+        study.held_out_relative_error_percent, rel=1e-6
+    )
+    assert repr(found).startswith("<Forces on 6 records of 'exact records', error: study ")
+    errors = found.to_frame()
+    assert errors["held_out"].tolist() == [r.held_out for r in measured.records]
+    samples = found.forces()[measured.records[0].file]
+    assert list(samples) == [
+        "time [s]", "displacement [m]", "velocity [m/s]", "force [N]", "study [N]"
+    ]
+    alone = study.predict(measured.records[0]).to_frame()
+    assert alone["error_percent"][0] == pytest.approx(errors["error_percent"][0])
+    with pytest.raises(InputError, match="reads one, got a path"):
+        study.predict("folder")
+
+
+def test_a_study_draws_its_pictures_by_name(study, measured, tmp_path):
+    assert repr(study.plot) == "<Pictures of a study: map(), probabilities(), errors(), loops()>"
+    for name in ("map", "probabilities", "errors", "loops"):
+        picture = getattr(study.plot, name)()
+        assert picture._repr_html_().count("<svg") == len(picture.drawings) > 0
+    one = study.plot.loops(measured.records[2].file)
+    assert measured.records[2].file in one.drawings[0]
+    written = study.plot.loops().save(tmp_path / "loops.svg")
+    assert [f.name for f in written][:2] == ["loops.svg", "loops-2.svg"]
+    assert all(ElementTree.parse(f).getroot().tag.endswith("svg") for f in written)
+    with pytest.raises(InputError, match="record must be one of"):
+        study.plot.loops("none")
+    with pytest.raises(InputError, match=r"path must be a name that ends in \.svg"):
+        one.save(tmp_path / "loops.jpg")
+
+
+def test_a_notebook_shows_a_study_s_map_where_records_are_at_hand(study, tmp_path):
+    assert "<svg" in study._repr_html_()
+    study.save(tmp_path / "study.json")
+    assert "<svg" not in discover.load_study(tmp_path / "study.json")._repr_html_()
+
+
+def test_a_gap_draws_its_pictures_by_name(gap):
+    assert repr(gap.plot) == (
+        "<Pictures of a gap: records(), rounds(), contests(), shapes(), surface(), loops()>"
+    )
+    assert gap.plot.records().drawings[0].startswith("<svg")
+    assert gap.plot.rounds().drawings[0].startswith("<svg")
+
+
+def test_a_study_in_place_of_its_model_is_told_from_it(study, measured):
+    with pytest.raises(InputError, match=r"model must be .* `study\.model` is one"):
+        discover.close_gap(measured, study)
+
+
+def test_what_is_printed_fits_on_a_screen(study, gap, measured):
+    for value in (study, gap, measured, measured.records[0], study.plot, study.predict(measured)):
+        assert len(repr(value)) < 400
+        assert "array(" not in repr(value)

@@ -246,3 +246,29 @@ def test_a_fit_without_the_force_is_refused():
     model = ps.SINDy(feature_library=library(), optimizer=BestSubset())
     with pytest.raises(InputError, match="x_dot must be the measured force"):
         model.fit(sine(), t=DT)
+
+
+def test_friction_that_jumps_bends_the_damping_and_a_fitted_transition_does_not():
+    motions, forces = records(
+        lambda a, w: 2500.0 * a * w * np.cos(w * TIME) + 400.0 * np.tanh(a * w * np.cos(w * TIME)
+                                                                       / 0.02)
+    )
+    terms = ("viscous-damping", "quadratic-damping", "coulomb-friction")
+    jump = library(terms=terms)
+    smooth = jump.with_fitted_transition(motions, forces)
+    assert jump.transition_speed == 0.0
+    assert smooth.transition_speed == pytest.approx(0.02, rel=1e-4)
+    found = {}
+    for name, features in (("jump", jump), ("smooth", smooth)):
+        model = ps.SINDy(feature_library=features, optimizer=BestSubset(max_terms=3))
+        model.fit(motions, t=DT, x_dot=forces, feature_names=["x"])
+        found[name] = model.coefficients()[0]
+    np.testing.assert_allclose(found["smooth"], [2500.0, 0.0, 400.0], rtol=1e-3, atol=1.0)
+    assert abs(found["jump"][0] - 2500.0) > 50.0
+
+
+def test_a_transition_needs_friction_and_a_force_of_its_records():
+    with pytest.raises(InputError, match="terms must be with coulomb-friction"):
+        library(terms=("inertia",)).with_fitted_transition(sine(), sine()[:, 0])
+    with pytest.raises(InputError, match=r"force must be of lengths \[512\], got \[3\]"):
+        library().with_fitted_transition(sine(), np.ones(3))
