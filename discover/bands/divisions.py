@@ -18,7 +18,7 @@ Brackets = tuple[tuple[float, float], ...]
 
 _THERE = 0.5
 """Share of a unit that is in a band, from which the unit counts as one of it."""
-_PLACES = 15
+_PLACES = 9
 _WIDTHS = (0.6, 1.2, 2.4)
 """Of gradual changes that are weighed beside sharp ones: finer ones follow around the best."""
 _FINER = 3

@@ -28,7 +28,7 @@ from discover.posterior.structures import Variant
 from discover.rows import RecordRows, force_rows
 from discover.rows.columns import Behind
 from models.checks import Array
-from models.constitutive import FittedTerm, ForceModel
+from models.constitutive import FittedTerm
 from models.cores import Core, family_of
 from models.terms import Term
 
@@ -178,8 +178,10 @@ def _space(
     if behind is None or all(t.term.acts == "force" for t in terms):
         space, curve = space_of(device.rows, device.friction)
         return space, curve, parts_of(space, [j.terms for j in joined])
-    models = _by_record(behind)
-    changed = Behind(models, {r.file: i for i, r in enumerate(device.rows)})
+    sheet = device.assessor.space.sheet
+    changed = Behind(
+        behind.model.by_record(sheet), {r.file: i for i, r in enumerate(device.rows)}
+    )
     targets = _targets(device.rows, changed)
     space, curve = space_of(
         device.rows, device.friction, columns_of=changed, targets=targets
@@ -187,20 +189,13 @@ def _space(
     return space, curve, parts_of(space, [j.terms for j in joined])
 
 
-def _by_record(behind: Assessed) -> dict[int, ForceModel]:
-    units = behind.local.model
-    return {place: units.in_unit(place) for place in range(behind.local.force.shape[0])}
-
-
 def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
     """Return what columns times whole coefficients shall make of each record's force."""
     result = []
     for r in rows:
         model = changed.models[changed.places[r.file]]
-        plain = [FittedTerm(t.id, 1.0, t.shape) for t in model.terms]
-        slopes = changed(r, plain)
-        values = np.array([t.coefficient for t in model.terms])
-        result.append(r.target - force_rows(r, model) + values @ slopes)
+        whole = changed(r, model.terms)  # a step of each as far as its column takes it
+        result.append(r.target - force_rows(r, model) + whole.sum(axis=0))
     return result
 
 

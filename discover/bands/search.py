@@ -200,7 +200,7 @@ class BandSearch:
         best_alone = alone[place][0]
         total = float(logsumexp([v for v, _, _ in alone.values()])) - best_alone
         total += float(last.value[0]) if now is not None else best_alone
-        variants = [self._of_best_core(own) for own in last.by_variant[0]]
+        variants = [self.of_best_core(own) for own in last.by_variant[0]]
         return Banded(
             coordinate=best.cut.coordinate,
             shares=best.shares,
@@ -222,18 +222,19 @@ class BandSearch:
         weighed = answer.value + ways.log_prior
         k = int(weighed.argmax())
         rest = np.delete(weighed, k)
-        best, prior = weighed[k], ways.log_prior[k]
+        value, best, prior, chosen = answer.value[k], weighed[k], ways.log_prior[k], answer.best[k]
+        few = self.only(chosen)
         while ways.cuts[k].width and ways.cuts[k].steps[0] > _CLOSE:
             ways = finer(ways.cuts[k], now.shares, now.brackets, self._along(now))
-            begun = np.tile(answer.best[k], (len(ways.cuts), 1))
-            answer = self.many(place, scale, ways.shares, begun)
-            around = answer.value + ways.log_prior + prior
+            begun = np.tile(np.arange(chosen.size), (len(ways.cuts), 1))
+            near = few.many(place, scale, ways.shares, begun).value
+            around = near + ways.log_prior + prior
             k, best = int(around.argmax()), logsumexp(around)
-            prior += ways.log_prior[k]
-        others = float(logsumexp([best, *rest]) - answer.value[k])
-        return Way(ways.cuts[k], ways.shares[k], ways.brackets[k], answer.best[k], others)
+            value, prior = near[k], prior + ways.log_prior[k]
+        others = float(logsumexp([best, *rest]) - value)
+        return Way(ways.cuts[k], ways.shares[k], ways.brackets[k], chosen, others)
 
-    def _of_best_core(self, by_variant: Array) -> int:
+    def of_best_core(self, by_variant: Array) -> int:
         """Return the best variant of the most probable core."""
         cores = np.array([v.core for v in self.variants])
         total = {core: logsumexp(by_variant[cores == core]) for core in dict.fromkeys(cores)}

@@ -104,7 +104,7 @@ def findings_of(
 
 def _wrong_signs(baseline: Baseline, at: Stage) -> list[Finding]:
     """Return which of the model's coefficients the records would have below zero."""
-    space = baseline.assessor.space
+    space = at.assessed.space
     local, place = at.assessed.local, at.assessed.place
     curve = baseline.assessor.curve_of(local.model)
     solved = judged(space, local, place.sizes(space.own_unit), curve).solved

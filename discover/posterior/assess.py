@@ -12,11 +12,16 @@ from scipy.special import logsumexp
 from discover.posterior.climb import Place, climb
 from discover.posterior.local import Judged, Local, fitted, judged
 from discover.posterior.model import Composite, Evaluator
+from discover.posterior.setup import behind
 from discover.posterior.space import Part, Space, departures
+from discover.rows.columns import Behind
 
 _ROUNDS = 3  # of fitting and climbing
 _SMALL = -9
 """Power of two, of the force: what is left below it is nothing that a model need explain."""
+_ORDINARY = -3
+"""Power of two, of what would make the whole force: by no more does dry friction differ from record
+to record where nothing else is behind it."""
 _POSSIBLE = 0.05
 """Probability from which it may be that no more is left."""
 
@@ -37,6 +42,8 @@ class Assessed:
     """Log evidence at every place that was looked at."""
     quiet: bool
     """True where all but noise may be explained."""
+    space: Space
+    """Of the records, friction's curve as the model's sensors pass it on."""
 
     @property
     def model(self) -> Composite:
@@ -76,29 +83,42 @@ class Assessor:
         In a hurry with a quarter of a cycle's points (`coarse`), or few `iterations`.
         """
         evaluator = self.coarse if coarse else self.evaluator
-        place = start
+        place, space = start, self.space
         local = Local(model, (), *[np.zeros(0)] * 4)
         visited: dict[Place, float] = {}
-        for turn in range(_ROUNDS):
-            sizes = place.sizes(self.space.own_unit)
+        for _ in range(_ROUNDS):
+            sizes = place.sizes(space.own_unit)
             numbers = None if refit else ()
+            space = self.behind(model)
             local = fitted(
-                self.space, evaluator, model, sizes, self.curve_of(model),
+                space, evaluator, model, sizes, self.curve_of(model),
                 numbers=numbers, iterations=iterations,
             )
             visited = {}
-            found = climb(partial(self._at, local, visited), place)
+            found = climb(partial(self._at, space, local, visited), place)
             model = local.model
-            if found == place and turn > 0:
-                break
-            stays, place = found == place, found
+            stays, place = found == place and space is self.space, found
             if stays:
                 break
-        self._at(local, visited, self.space.quiet)
-        best = judged(self.space, local, place.sizes(self.space.own_unit), self.curve_of(model))
+        self._at(space, local, visited, space.quiet)
+        best = judged(space, local, place.sizes(space.own_unit), self.curve_of(model))
+        if space is not self.space:
+            space.forget()
         return Assessed(
-            local, place, float(logsumexp(list(visited.values()))), best, visited, is_quiet(visited)
+            local, place, float(logsumexp(list(visited.values()))), best, visited,
+            is_quiet(visited), space,
         )
+
+    def behind(self, model: Composite) -> Space:
+        """Return the space with friction's curve as a model's sensors pass it on.
+
+        Behind a joint it stays as it is: each column would have to be simulated in time.
+        """
+        if self.friction is None or not model.changes_force:
+            return self.space
+        sheet = self.space.sheet
+        changed = Behind(model.by_record(sheet), {r.file: i for i, r in enumerate(sheet.rows)})
+        return behind(self.space, self.friction, changed)
 
     def predicting(self, assessed: Assessed) -> Assessed:
         """Return a model at the numbers that predict best, where nothing is left to a remainder.
@@ -108,27 +128,27 @@ class Assessor:
         """
         if assessed.place.remainder <= _SMALL or not assessed.local.numbers:
             return assessed
-        local, curve = assessed.local, self.curve_of(assessed.model)
+        local, curve, space = assessed.local, self.curve_of(assessed.model), assessed.space
         visited: dict[Place, float] = {}
         place = assessed.place
         for _ in range(_ROUNDS):
             visited = {}
             for flat in assessed.place.unaided:
-                self._at(local, visited, flat)
+                self._at(space, local, visited, flat)
             before, place = place, max(visited, key=lambda p: visited[p])
             if place == before:
                 break
-            sizes = place.sizes(self.space.own_unit)
-            local = fitted(self.space, self.evaluator, local.model, sizes, curve)
-        best = judged(self.space, local, place.sizes(self.space.own_unit), curve)
-        return Assessed(local, place, assessed.value, best, visited, assessed.quiet)
+            sizes = place.sizes(space.own_unit)
+            local = fitted(space, self.evaluator, local.model, sizes, curve)
+        best = judged(space, local, place.sizes(space.own_unit), curve)
+        return Assessed(local, place, assessed.value, best, visited, assessed.quiet, space)
 
-    def _at(self, local: Local, visited: dict[Place, float], place: Place) -> float:
+    def _at(
+        self, space: Space, local: Local, visited: dict[Place, float], place: Place
+    ) -> float:
         if place not in visited:
-            sizes = place.sizes(self.space.own_unit)
-            visited[place] = judged(
-                self.space, local, sizes, self.curve_of(local.model)
-            ).value
+            sizes = place.sizes(space.own_unit)
+            visited[place] = judged(space, local, sizes, self.curve_of(local.model)).value
         return visited[place]
 
     def curve_of(self, model: Composite) -> Part | None:
@@ -141,7 +161,10 @@ class Assessor:
 
 def is_quiet(visited: Mapping[Place, float]) -> bool:
     """Tell whether it may be that no more than noise is left, from log evidence by sizes, nats."""
-    small = [v for p, v in visited.items() if p.remainder <= _SMALL and p.loudest <= _SMALL]
+    small = [
+        v for p, v in visited.items()
+        if p.remainder <= _SMALL and p.loudest <= _SMALL and p.own <= _ORDINARY
+    ]
     if not small:
         return False
     return bool(logsumexp(small) - logsumexp(list(visited.values())) > np.log(_POSSIBLE))

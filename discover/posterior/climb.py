@@ -38,6 +38,11 @@ class Place:
         return self.powers[0]
 
     @property
+    def own(self) -> int:
+        """Power of the friction that records have of their own."""
+        return self.powers[1]
+
+    @property
     def loudest(self) -> int:
         """Power of the greatest independent error."""
         return max(self.powers[2:])

@@ -15,8 +15,7 @@ from models.constitutive import FittedTerm
 from models.terms import TERMS
 
 _NAMES = 5  # that are fitted, of those that gain most
-_SHAPES = 2  # of each, from which a fit starts
-_IMPACTS = 3  # likewise, where there are impacts
+_SHAPES = 3  # of each, from which a fit starts, the best of each discrete choice first
 _FEW_STEPS, _STEPS = 3, 12  # of a fit: from several shapes, and from one
 _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
@@ -94,7 +93,7 @@ def _simulated(identifier: str) -> bool:
 def _tried(
     assessor: Assessor, now: Assessed, ids: Sequence[str], among: int
 ) -> list[Candidate]:
-    space = assessor.space
+    space = now.space
     trials = trials_of(space.scales, assessor.coarse, ids, now.model, among=among)
     if not trials.entries:
         return []
@@ -122,15 +121,9 @@ def _tried(
 def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:
     """Return a term beside the model, fitted from its best shapes."""
     impacts = starts[0].trial.terms[0].term.impacts is not None
-    most = _IMPACTS if impacts else _SHAPES
-    chosen: list[Gain] = []
-    for gain in starts:
-        if all(gain.trial is not c.trial for c in chosen):
-            chosen.append(gain)
-        if len(chosen) == most:
-            break
     begun = []
     start = now.place.towards(assessor.space.quiet)
+    chosen = _starting(starts)
     for gain in chosen:
         model = now.model.plus(*_begun(gain))
         steps = _FEW_STEPS if len(chosen) > 1 else _STEPS
@@ -142,6 +135,26 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
     return Candidate(
         gain.trial.id, first.value + gain.trial.log_prior, first, len(gain.trial.terms)
     )
+
+
+def _starting(ranked: Sequence[Gain]) -> list[Gain]:
+    """Return the shapes from which a fit starts: the best of each discrete choice, then others.
+
+    Between shapes that a fit can turn into each other, it will find its way; between the others
+    a gain in a straight line says too little.
+    """
+    trials = {id(g.trial): g for g in reversed(ranked)}
+    shapes = [g for g in ranked if trials[id(g.trial)] is g]
+    seen, first, others = set[tuple[object, ...]](), list[Gain](), list[Gain]()
+    for gain in shapes:
+        term, shape = gain.trial.terms[0].term, gain.trial.terms[0].shape
+        choice = (
+            len(gain.trial.terms),
+            *(shape[p.name] if not p.fitted else shape[p.name] == 0.0 for p in term.parameters),
+        )
+        (others if choice in seen else first).append(gain)
+        seen.add(choice)
+    return [*first, *others][:_SHAPES]
 
 
 def _begun(gain: Gain) -> list[FittedTerm]:

@@ -28,7 +28,7 @@ def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
         Mean square of what is left over that of the record's force. The remainder that records
         share is not used to predict.
     """
-    space, local = assessor.space, assessed.local
+    space, local = assessed.space, assessed.local
     curve = assessor.curve_of(local.model)
     here = space.given(assessed.place.sizes(space.own_unit))
     departing = local.slopes[:, :0] if curve is None else space.columns[:, curve.columns]

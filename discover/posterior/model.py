@@ -101,12 +101,26 @@ class Composite:
                 terms.append(scaled)
         return ForceModel(tuple(terms))
 
+    def by_record(self, sheet: Sheet) -> dict[int, ForceModel]:
+        """Return the model as it is in each record, by its place: in the record's first unit."""
+        first = {u.record: i for i, u in reversed(list(enumerate(sheet.units)))}
+        return {
+            record: self.in_test(sheet.rows[record].motion.test).in_unit(unit)
+            for record, unit in first.items()
+        }
+
     def in_test(self, test: int) -> Composite:
         """Return the model without what is there in other tests only."""
         kept = tuple(
             p for p in self.terms if not test or p.fitted.shape.get(ONLY.name, 0.0) in (0.0, test)
         )
         return self if len(kept) == len(self.terms) else Composite(kept)
+
+    @property
+    def changes_force(self) -> bool:
+        """True where a term changes the force, as a sensor does, and none the motion."""
+        acts = {p.fitted.term.acts for p in self.terms}
+        return "output" in acts and "input" not in acts
 
     @property
     def adds_up(self) -> bool:

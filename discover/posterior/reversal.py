@@ -12,7 +12,7 @@ from discover.posterior.covariance import Sizes
 from discover.posterior.local import fitted
 from discover.posterior.metric import curve_given
 from discover.posterior.model import Composite
-from discover.posterior.space import Part
+from discover.posterior.space import Part, Space
 from discover.regression.best_subset import best_subsets
 from models.checks import Array
 from models.constitutive import FittedTerm
@@ -50,7 +50,7 @@ def with_few_curves(
     nothing but noise is left, those beside the whole curve are.
     """
     found = reversal_of(assessor, assessed, predicting)
-    model, space = predicting.model, assessor.space
+    model, space = predicting.model, predicting.space
     if found is None or predicting is assessed:
         return found, model
     name = found.terms[0].id
@@ -92,13 +92,14 @@ def reversal_of(
     at = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == curve.id]
     if own is None or len(at) != 1:
         return None
-    space = assessor.space
+    space = predicting.space
     main = predicting.model.terms[at[0]].fitted
     left = space.sheet.target - predicting.local.force
     departing, _ = curve_given(
         space, predicting.place.sizes(space.own_unit), left, own, predicting.judged.scale
     )
-    plain = assessor.evaluator.unit(main)
+    one = FittedTerm(main.id, 1.0, main.shape)
+    plain = space.sheet.stack([space.columns_of(r, [one]) for r in space.sheet.rows])[:, 0]
     columns = space.columns[:, curve.columns]
     whole = np.concatenate([columns[:, :1], columns[:, 1:] + columns[:, :1]], axis=1)
     places = {tuple(t.shape.items()): k for k, t in enumerate(curve.terms)}
@@ -108,7 +109,7 @@ def reversal_of(
     terms = _few(whole, total, curve)
     without = left + main.coefficient * plain
     sizes = assessed.place.sizes(space.own_unit)
-    follows, sure, size, interval = _turning(assessor, sizes, without, whole, curve)
+    follows, sure, size, interval = _turning(space, sizes, without, whole, curve)
     friction = max(sum(abs(t.coefficient) for t in terms), 1e-300)
     return Reversal(terms, follows, sure, size, interval, sizes.friction / friction)
 
@@ -136,10 +137,9 @@ def _few(whole: Array, total: Array, curve: Part) -> tuple[FittedTerm, ...]:
 
 
 def _turning(
-    assessor: Assessor, sizes: Sizes, left: Array, whole: Array, curve: Part
+    space: Space, sizes: Sizes, left: Array, whole: Array, curve: Part
 ) -> tuple[str, float, float, tuple[float, float]]:
     """Return what friction turns over, how surely, and over how much, from each curve alone."""
-    space = assessor.space
     here = space.given(sizes)
     stacked = np.concatenate([whole, left[:, None]], axis=1)
     _, gram = here.beside(np.zeros(0, dtype=int), stacked)

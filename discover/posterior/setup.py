@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from discover.posterior.sheet import sheet_of
-from discover.posterior.space import Part, Space, curve_part
+from discover.posterior.sheet import Sheet, sheet_of
+from discover.posterior.space import Part, Space, curve_part, differing
 from discover.rows import RecordRows
 from discover.rows.columns import force_columns, scales_of
 from models.checks import Array
@@ -50,9 +50,34 @@ def space_of(
     if targets is not None:
         shown = [replace(r, target=t) for r, t in zip(rows, targets, strict=True)]
     sheet = sheet_of(shown, blocks)
-    count = blocks[0].shape[0]
-    chosen = sorted({min(int(share * count), count - 1) for share in _OWN} - {0})
-    own = sheet.stack([np.concatenate([b[:1], b[chosen] - b[:1]]) for b in blocks])
+    own = _own(sheet, blocks)
     empty = np.zeros((len(sheet.units), 0, sheet.target.shape[1]))
     space = Space(sheet, scales, empty, own, float(sheet.scale(own[:, :1])[0]), columns_of)
     return space, curve_part(space, blocks, term)
+
+
+def behind(space: Space, curve: Part, columns_of: ColumnsOf) -> Space:
+    """Return a space that holds a curve only, with other columns of the same terms.
+
+    Parameters
+    ----------
+    space : Space
+        As `space_of` returns it.
+    curve : Part
+        Likewise: its places stay.
+    columns_of : callable
+        Gives terms' rows in a record, as changes of motion and of force pass them on.
+    """
+    blocks = [columns_of(r, curve.terms) for r in space.sheet.rows]
+    own = _own(space.sheet, blocks)
+    empty = space.columns[:, :0]
+    changed = Space(space.sheet, space.scales, empty, own, space.own_unit, columns_of)
+    changed.add(differing(blocks))
+    return changed
+
+
+def _own(sheet: Sheet, blocks: Sequence[Array]) -> Array:
+    """Return the columns (U, N, R) that units may have of their own."""
+    count = blocks[0].shape[0]
+    chosen = sorted({min(int(share * count), count - 1) for share in _OWN} - {0})
+    return sheet.stack([differing([b])[0][[0, *chosen]] for b in blocks])

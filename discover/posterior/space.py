@@ -84,8 +84,7 @@ class Space:
         new = self.sheet.stack(blocks)
         before = self.columns.shape[1]
         self.columns = np.concatenate([self.columns, new], axis=1)
-        self._products.clear()
-        self._given.clear()
+        self.forget()
         return np.arange(before, self.columns.shape[1])
 
     def given(self, sizes: Sizes) -> Given:
@@ -102,6 +101,11 @@ class Space:
             self._given[sizes] = known
         return known
 
+    def forget(self) -> None:
+        """Let go of products, which are many: they are made again where they are asked for."""
+        self._products.clear()
+        self._given.clear()
+
     def scale(self, places: Indices) -> Array:
         """Return the coefficients at which columns make the whole force."""
         return self.sheet.scale(self.columns[:, places])
@@ -114,8 +118,7 @@ def unit(term: Term, shape: Shape) -> FittedTerm:
 
 def curve_part(space: Space, blocks: Sequence[Array], term: Term) -> Part:
     """Return a term with its curves: the plainest, and how the others differ from it."""
-    differing = [np.concatenate([b[:1], b[1:] - b[:1]]) for b in blocks]
-    places = space.add(differing)
+    places = space.add(differing(blocks))
     size = float(space.scale(places[:1])[0])
     spread = np.full(places.size, term.departure)
     spread[0] = 1.0
@@ -126,6 +129,11 @@ def curve_part(space: Space, blocks: Sequence[Array], term: Term) -> Part:
         tuple(unit(term, s) for s in shapes), places, spread, sign,
         tuple(size * s for s in _CURVE_SCALES),
     )
+
+
+def differing(blocks: Sequence[Array]) -> list[Array]:
+    """Return columns (K, R_r) of every record: the first, and how the others differ from it."""
+    return [np.concatenate([b[:1], b[1:] - b[:1]]) for b in blocks]
 
 
 def departures(part: Part, *, path: bool) -> Part:

@@ -56,8 +56,8 @@ def spread_of(assessor: Assessor, assessed: Assessed, predicting: Composite) -> 
     means, covariances = [], []
     curve = assessor.curve_of(local.model)
     for i in kept:
-        sizes = places[i].sizes(assessor.space.own_unit)
-        found = judged(assessor.space, local, sizes, curve).solved
+        sizes = places[i].sizes(assessed.space.own_unit)
+        found = judged(assessed.space, local, sizes, curve).solved
         means.append(np.where(shaped, start + found.mean, found.mean))
         covariances.append(found.covariance)
     mean = np.einsum("w,wp->p", share, means)
@@ -66,6 +66,21 @@ def spread_of(assessor: Assessor, assessed: Assessed, predicting: Composite) -> 
     whole = whole + np.einsum("w,wp,wq->pq", share, between, between)
     centre = np.array([predicting.value(n) for n in local.numbers])
     return Spread(local.numbers, centre, whole + np.outer(mean - centre, mean - centre))
+
+
+def idle(predicting: Assessed) -> list[int]:
+    """Return the places of terms that may as well be nothing where terms alone predict.
+
+    The least sure comes first; a coefficient of the wrong sign counts as nothing.
+    """
+    local, solved = predicting.local, predicting.judged.solved
+    wide = np.sqrt(np.maximum(np.diagonal(solved.covariance), 1e-300))
+    signed = np.where(local.sign == 0.0, np.abs(solved.mean), local.sign * solved.mean)
+    found = {
+        n.term: float(s) for n, s in zip(local.numbers, signed / wide, strict=True)
+        if n.shape is None and s <= _SURE
+    }
+    return sorted(found, key=lambda place: found[place])
 
 
 def is_told(assessor: Assessor, assessed: Assessed, count: int) -> bool:

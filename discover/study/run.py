@@ -12,6 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from discover.bands.boundaries import Boundary, boundaries_of, line_evidence
 from discover.bands.extras import Found, found
+from discover.bands.told import told
 from discover.dean import AmplitudeExponent, DeanCheck, amplitude_exponent, check_dean
 from discover.figure_data import StructureProbability, StudyFigureData
 from discover.motion_fit import Observation
@@ -55,7 +56,7 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
     chosen = options or StudyOptions()
     with threadpool_limits(1):  # its matrices are small: more threads take longer
         prepared = prepare(campaign, chosen)
-        answer = found(prepared.device)
+        answer = told(prepared.device, found(prepared.device))
         return _study(campaign, chosen, prepared, answer, estimated(prepared, answer))
 
 

@@ -12,6 +12,9 @@ from models.terms.low_pass import low_passed
 from models.terms.scales import Scales
 from models.terms.term import ForceOf, Parameter, Shape, Start, Term
 
+_PROBES = (2e-4, 1e-2, 1e-1)
+"""rad of the fastest motion, by which a force is tried late: one that jumps changes in steps."""
+
 Late = Callable[[float], Array]
 
 
@@ -61,8 +64,8 @@ def read_late(force: Array, time: Array, degree: int) -> Late:
 
 def starts(scales: Scales) -> list[Start]:
     """Return a later sample, a low-pass, a number of samples, one value a test."""
-    probe = 2e-4 / scales.omega  # so short that the fastest force is late by little
-    sampled = [Start.one(probe)]
+    probe = _PROBES[0] / scales.omega
+    sampled = [Start.one(p / scales.omega) for p in _PROBES]
     if scales.sampling:
         sampled.append(Start.one(probe, sampling=scales.sampling))
     filtered = [Start.one(probe, filter_order=order) for order in (1.0, 2.0, 4.0)]

@@ -79,7 +79,6 @@ def test_one_record_gives_one_band_and_says_why():
     assert any("one record can't show a boundary" in f.text for f in study.findings)
 
 
-@pytest.mark.xfail(strict=True, reason="beside friction that jumps no common delay is found")
 def test_a_delay_of_the_force_channel_is_found_and_corrected():
     c1, c2 = DEVICE_12.laminar_coefficients
     law = integer(370.38, c2, c1, 0.0, 400.0)

@@ -67,7 +67,6 @@ def test_extras_that_add_a_force_are_named_beside_their_cores():
     check_extras(answered("one-extra", 3, lambda case: case.effect in adds))
 
 
-@pytest.mark.xfail(strict=True, reason="a delay is told as boundaries")
 def test_delays_are_named_beside_their_cores():
     check_extras(answered("one-extra", 2, lambda case: case.effect == "time-delay"))
 
