@@ -94,6 +94,10 @@ def classify(record: Record) -> RecordKind:
     >>> kind.kind, round(kind.frequency, 6), round(kind.cycles, 3), kind.usable
     ('sine', 1.6, 6.397, slice(0, 2000, None))
     """
+    return record.once(_classified)
+
+
+def _classified(record: Record) -> RecordKind:
     size = record.time.size
     if record.displacement is None:
         if record.frequency is None:

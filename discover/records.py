@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from models.checks import Array, InputError, finite_array, shown
 from models.device import Device
+
+Found = TypeVar("Found")
 
 GAP = 1.5
 """Times the usual step, from which a step is a gap in the record."""
@@ -88,6 +90,11 @@ class Record:
     uniform: bool = True
     """False only for a digitised force curve, whose points are far from evenly spaced."""
 
+    _known: dict[Callable[[Record], Any], Any] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """What was found in it, by what found it."""
+
     def __post_init__(self) -> None:
         """Reject columns of unequal length and times that do not rise, and freeze the arrays."""
         for name in ("time", *_COLUMNS):
@@ -132,6 +139,12 @@ class Record:
             return self
         columns = {n: getattr(self, n) for n in _COLUMNS if getattr(self, n) is not None}
         return self.sampled(grid, on_grid(self.time, {**columns, **self.inputs}, grid))
+
+    def once(self, found: Callable[[Record], Found]) -> Found:
+        """Return what a function finds in the record: it is asked once, as samples never change."""
+        if found not in self._known:
+            self._known[found] = found(self)
+        return cast(Found, self._known[found])
 
     def sampled(self, time: Array, columns: Mapping[str, Array]) -> Record:
         """Return the record with other samples: of its force and whatever else it has."""

@@ -192,14 +192,17 @@ class ForceModel:
 
     def changed(self, added: ForceOf, motion: Motion) -> Array:
         """Return what the input and output effects make of an added force, (N,) N."""
-        chain = [t for t in self.terms if t.term.acts == "input"]
-        chain += [t for t in self.terms if t.term.acts == "output"]
         whole = added
-        for fitted in chain:
+        for fitted in self.chain:
             transform = fitted.term.transform
             if transform is not None:
                 whole = Changed(whole, transform, fitted.coefficient, fitted.shape)
         return whole(motion)
+
+    @property
+    def chain(self) -> tuple[FittedTerm, ...]:
+        """Return the terms that change an added force, in the order in which they do."""
+        return tuple(t for act in ("input", "output") for t in self.terms if t.term.acts == act)
 
     def dynamic_stiffness(self, omega: ArrayLike) -> NDArray[np.complex128]:
         """Return F/X of the terms that are linear in displacement, N/m, at `omega` in rad/s.

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
-from scipy.linalg import orth
 from scipy.sparse import csr_array
 
 from discover.motion_fit.noise import power_density
@@ -31,8 +31,8 @@ _SLOW = 3
 _CYCLES_EACH = 3.0  # for every order of slow change
 _BESIDE = 2.0  # harmonics beyond those that change, that see it
 _MANY_CYCLES = 20.0  # of which slow changes take next to nothing
-_AT_ONCE = 16  # waves
 _SAME = 1e-9  # of the greatest singular value: no change of its own
+_SQUARED = 1e-8  # of the greatest square of one, from which squares tell changes apart
 _CHANGING = 5  # harmonics whose size may change slowly
 _ALONE = 0.95  # of a sample in its own comparison: no other cycle was near
 _ROUGH = 3.0  # times the median of what phases leave, above which a phase is left out
@@ -105,8 +105,8 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     width = float(frequencies[1])
     gain = _response(same, time, np.flatnonzero(kept), width, frequencies.size)
     if cycles < _MANY_CYCLES:
-        low = frequencies[frequencies < (_changing(time.size) + _BESIDE) * frequency]
-        gain[: low.size] *= _left_by(orth(changes[kept], rcond=_SAME), same, time, kept, low)
+        bins = np.searchsorted(frequencies, (_changing(time.size) + _BESIDE) * frequency)
+        gain[:bins] *= _left_by(changes, same, at, kept, int(bins))
     gain *= float(taper @ share) / float(np.sum(taper))
     spacing = frequency / width
     apart = np.abs(np.mod(frequencies / frequency + 0.5, 1.0) - 0.5) * spacing
@@ -160,23 +160,63 @@ def _without(left: Array, changes: Array, kept: Kept) -> Array:
 
     What changes is not known there.
     """
-    basis = orth(changes[kept], rcond=_SAME)
+    inside = changes[kept]
+    turn = _orthonormal(inside)
     result = left.copy()
-    result[kept] -= basis @ (basis.T @ left[kept])
+    result[kept] -= inside @ (turn @ (turn.T @ (inside.T @ left[kept])))
     return result
 
 
+def _orthonormal(columns: Array) -> Array:
+    """Return what makes columns (N, C) orthonormal ones that span the same, (C, R)."""
+    values, turn = np.linalg.eigh(columns.T @ columns)
+    if values[0] < _SQUARED * values[-1]:  # squares have lost what is nearly the same
+        _, sizes, turned = np.linalg.svd(np.linalg.qr(columns, mode="r"), full_matrices=False)
+        there = sizes > _SAME * sizes[0]
+        return np.asarray(turned[there].T / sizes[there])
+    return np.asarray(turn / np.sqrt(values))
+
+
 def _left_by(
-    basis: Array, same: csr_array, time: Array, kept: Kept, frequencies: Array
+    changes: Array, same: csr_array, at: NDArray[np.intp], kept: Kept, bins: int
 ) -> Array:
-    """Return the share of a wave's power that slow changes leave, at each frequency (F,)."""
-    shares = []
-    for begin in range(0, frequencies.size, _AT_ONCE):
-        waves = np.exp(2j * np.pi * np.outer(time, frequencies[begin : begin + _AT_ONCE]))
-        waves = (waves - same @ waves)[kept]
-        power = np.maximum(np.sum(np.abs(waves) ** 2, axis=0), 1e-300)
-        shares.append(1.0 - np.sum(np.abs(basis.T @ waves) ** 2, axis=0) / power)
-    return np.concatenate(shares)
+    """Return the share of a wave's power that slow changes leave, at the lowest `bins` (F,).
+
+    A wave's power after the comparison depends on lags between samples alone, and its part along
+    slow changes on what these are before it: both are spectra, so that no wave is formed.
+    """
+    size = int(at[-1]) + 1
+    inside = changes[kept]
+    lags = _lag_products(same.indptr, same.indices, same.data, at, np.flatnonzero(kept), size)
+    power = np.maximum(np.fft.rfft(lags)[:bins].real, 1e-300)
+    whole = np.zeros_like(changes)
+    whole[kept] = inside
+    before = (whole - same.T @ whole) @ _orthonormal(inside)
+    spread = np.zeros((before.shape[1], size))
+    spread[:, at] = before.T
+    lines = np.fft.rfft(spread, axis=1)[:, :bins]
+    return np.asarray(1.0 - np.sum(np.abs(lines) ** 2, axis=0) / power)
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _lag_products(
+    begin: NDArray[np.int32], places: NDArray[np.int32], weights: Array, at: NDArray[np.intp],
+    rows: NDArray[np.intp], size: int,
+) -> Array:
+    """Return products of a sample's and its comparison's weights, summed by lag, (size,).
+
+    Over some `rows` of the comparison; lags count in steps, in a circle of `size`.
+    """
+    found = np.zeros(size)
+    for i in rows:
+        found[0] += 1.0
+        for j in range(begin[i], begin[i + 1]):
+            found[abs(at[places[j]] - at[i])] -= 2.0 * weights[j]
+            found[0] += weights[j] * weights[j]
+            for k in range(begin[i], j):
+                lag = abs(at[places[j]] - at[places[k]])
+                found[lag] += 2.0 * weights[j] * weights[k]
+    return found
 
 
 def _same_phase(phase: Array, order: NDArray[np.intp], half: float) -> csr_array:
@@ -189,18 +229,42 @@ def _same_phase(phase: Array, order: NDArray[np.intp], half: float) -> csr_array
     here = np.arange(size, 2 * size)
     first = np.maximum(np.searchsorted(around, phase - half, side="left"), here - _NEAREST)
     last = np.minimum(np.searchsorted(around, phase + half, side="right"), here + _NEAREST + 1)
-    count = last - first
-    row = np.repeat(np.arange(size), count)
-    begin = np.cumsum(count) - count
-    column = np.arange(row.size) + np.repeat(first - begin, count)
-    away = (around[column] - phase[row]) / half
-    weight = np.maximum(1.0 - away**2, _LEAST_WEIGHT)
-    zeroth, one, two = (np.bincount(row, weight * away**k, size) for k in range(3))
-    spread = zeroth * two - one**2
-    sloped = spread > _SLOPED * zeroth**2
-    line = weight * (two[row] - one[row] * away) / np.where(sloped, spread, 1.0)[row]
-    weight = np.where(sloped[row], line, weight / zeroth[row])
-    return csr_array((weight, (order[row], order[column % size])), shape=(size, size))
+    count = np.empty(size, dtype=np.intp)
+    count[order] = last - first
+    begin = np.concatenate(([0], np.cumsum(count)))
+    places, weights = _lines_through(around, order, first, last, begin, half)
+    return csr_array((weights, places, begin), shape=(size, size))
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _lines_through(
+    around: Array, order: NDArray[np.intp], first: NDArray[np.intp], last: NDArray[np.intp],
+    begin: NDArray[np.intp], half: float,
+) -> tuple[NDArray[np.intp], Array]:
+    """Return samples (E,) and weights (E,) of the line at each sample's phase, in their order."""
+    size = order.size
+    places, weights = np.empty(begin[-1], dtype=np.intp), np.empty(begin[-1])
+    for i in range(size):
+        own, at = around[size + i], begin[order[i]]
+        zeroth = one = two = 0.0
+        for k in range(first[i], last[i]):
+            away = (around[k] - own) / half
+            weight = max(1.0 - away * away, _LEAST_WEIGHT)
+            zeroth += weight
+            one += weight * away
+            two += weight * away * away
+        spread = zeroth * two - one * one
+        sloped = spread > _SLOPED * zeroth * zeroth
+        for k in range(first[i], last[i]):
+            away = (around[k] - own) / half
+            weight = max(1.0 - away * away, _LEAST_WEIGHT)
+            if sloped:
+                weights[at] = weight * (two - one * away) / spread
+            else:
+                weights[at] = weight / zeroth
+            places[at] = order[k % size]
+            at += 1
+    return places, weights
 
 
 def _smooth_phases(

@@ -143,10 +143,12 @@ def fitted(
         for _ in range(_HALVINGS):
             values = _bounded(here, wanted, share, space.scales)
             trial = here.model.with_values(here.numbers, values)
-            there = local_of(space, evaluator, trial, here.numbers)
-            value = _density(space, there, sizes, curve)
-            if value > best:
-                break
+            # A prior only takes away, so where the fit is no better the slopes are not needed.
+            if _fit(space, evaluator.force(trial), sizes, curve) > best:
+                there = local_of(space, evaluator, trial, here.numbers)
+                value = _density(space, there, sizes, curve)
+                if value > best:
+                    break
             share *= 0.4
         else:
             return here
@@ -201,10 +203,16 @@ def _bounded(local: Local, wanted: Array, share: float, scales: Scales) -> list[
 
 def _density(space: Space, local: Local, sizes: Sizes, curve: Part | None) -> float:
     """Return the log density of a model at its very values, with their prior, nats."""
-    left = (space.sheet.target - local.force)[:, None]
+    prior = -0.5 * float(np.sum((local.values / local.spread) ** 2))
+    return _fit(space, local.force, sizes, curve) + prior
+
+
+def _fit(space: Space, force: Array, sizes: Sizes, curve: Part | None) -> float:
+    """Return the log density of the measured force beside a model's (U, R), nats."""
+    left = (space.sheet.target - force)[:, None]
     if not np.all(np.isfinite(left)):
         return -np.inf
     values = [
         at.log_normal - 0.5 * float(at.gram[0, 0]) for at in compared(space, sizes, left, curve)
     ]
-    return float(logsumexp(values)) - 0.5 * float(np.sum((local.values / local.spread) ** 2))
+    return float(logsumexp(values))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,9 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
 from models.terms.between_tests import ONLY
+from models.terms.term import Changed, ForceOf
 
+_INNER = 16  # forces behind an effect that are kept, as fits change the outermost alone too
 _TOTALS = 4  # sums of terms that are kept: a joint's device is fitted once to each
 
 
@@ -75,6 +77,28 @@ def force_rows(rows: RecordRows, model: ForceModel) -> Array:
     return RecordForces(rows).of_model(model)
 
 
+@dataclass(frozen=True)
+class _Kept(Changed):
+    """A changed force that further effects change: what it is on a record's motion is kept."""
+
+    motion: Motion
+    """Of the record."""
+    known: dict[Hashable, Array]
+    """The latest forces on it."""
+    key: Hashable
+    """Of this one."""
+
+    def __call__(self, motion: Motion) -> Array:
+        """Return the changed force, (N,) N; the same array where it is asked for again."""
+        if motion is not self.motion:
+            return super().__call__(motion)
+        found = self.known.pop(self.key, None)
+        if found is None:
+            found = super().__call__(motion)
+        _keep(self.known, self.key, found, most=_INNER)
+        return found
+
+
 class RecordForces:
     """Models' rows in one record. What a unit of a term adds is kept, the latest of them."""
 
@@ -84,6 +108,7 @@ class RecordForces:
         self._most = most
         self._units: dict[Hashable, Array] = {}
         self._totals: dict[Hashable, Array] = {}
+        self._inner: dict[Hashable, Array] = {}
 
     def of_model(self, model: ForceModel) -> Array:
         """Return a model's rows (R,)."""
@@ -121,11 +146,20 @@ class RecordForces:
         def force_of(motion: Motion) -> Array:
             return total if motion is self._motion else ForceModel(tuple(adding)).added(motion)
 
-        return ForceModel(changing).changed(force_of, self._motion)
+        *inner, last = ForceModel(changing).chain
+        whole: ForceOf = force_of
+        for place, t in enumerate(inner, start=1):
+            if t.term.transform is None:
+                continue
+            key = (_key(adding), _key(inner[:place]))
+            whole = _Kept(
+                whole, t.term.transform, t.coefficient, t.shape, self._motion, self._inner, key
+            )
+        return ForceModel((last,)).changed(whole, self._motion)
 
     def _total(self, adding: Sequence[FittedTerm]) -> Array:
         """Return the sum of what terms add; the same array where it is asked for again."""
-        key = tuple((t.id, t.coefficient, *t.shape.items()) for t in adding)
+        key = _key(adding)
         known = self._totals.get(key)
         if known is None:
             known = np.zeros_like(self._motion.displacement)
@@ -143,6 +177,10 @@ class RecordForces:
             known = fitted.term.column(self._motion, fitted.shape)
             _keep(self._units, key, known, most=self._most)
         return known
+
+
+def _key(terms: Sequence[FittedTerm]) -> Hashable:
+    return tuple((t.id, t.coefficient, *t.shape.items()) for t in terms)
 
 
 def _keep(known: dict[Hashable, Array], key: Hashable, value: Array, *, most: int) -> None:
