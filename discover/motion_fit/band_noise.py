@@ -9,9 +9,11 @@ what their number takes from the noise is given back.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import prev_fast_len
 
 from discover.motion_fit.noise_spectrum import NoiseSpectrum, smooth_spectrum
 from discover.motion_fit.observation import Lines
@@ -28,6 +30,7 @@ _SCALES = np.geomspace(3e-3, 1.0, 6)
 """Of the root mean square speed and displacement, over which friction may reverse."""
 _SLOW = 3  # polynomials of time that follow a drift
 _FEWEST_LINES = 12
+_LONG = 200_000  # samples, from which it matters how fast a length transforms
 _HALF_OCTAVE = float(np.sqrt(2.0))
 
 
@@ -63,22 +66,32 @@ def band_noise(
     inner : slice
         Samples that count: derivatives at a record's ends rest on what is not there.
     """
+    size = inner.stop - inner.start
+    if size > _LONG:  # a few samples less make many transforms several times as fast
+        inner = slice(inner.start, inner.start + prev_fast_len(size, real=True))
     force = force[inner]
     taper = np.hanning(force.size + 2)[1:-1]
     scale = np.sqrt(2.0 * step / np.sum(taper**2))
-    columns = _functions_of(motion)[:, inner]
-    columns = (columns - columns.mean(axis=1, keepdims=True)) * (taper * scale)
-    lines = np.fft.rfft(columns, axis=1)[:, 1:]
-    target = np.fft.rfft((force - force.mean()) * taper * scale)[1:]
+    taper *= scale
+
+    def spectrum(column: Array) -> Lines:
+        return np.asarray(np.fft.rfft((column - column.mean()) * taper)[1:])
+
+    each = [spectrum(column[inner]) for column in _functions_of(motion)]
+    target = spectrum(force)
     frequencies = np.asarray(np.fft.rfftfreq(force.size, step))[1:]
     width = float(frequencies[0])
     count = max(int(np.floor(cutoff / width)), min(_FEWEST_LINES, frequencies.size))
-    coefficients, left, kept = _explained(lines[:, :count], target[:count], frequencies[:count])
-    beyond = np.abs(target[count:] - coefficients @ lines[:, count:]) ** 2
+    lines = np.stack([e[:count] for e in each])
+    coefficients, left, kept = _explained(lines, target[:count], frequencies[:count])
+    beyond = target[count:].copy()
+    for place in np.flatnonzero(coefficients):
+        beyond -= coefficients[place] * each[place][count:]
+    beyond = np.abs(beyond) ** 2
     left = np.concatenate([left, np.minimum(beyond, np.abs(target[count:]) ** 2)])
     kept = np.concatenate([kept, np.ones(beyond.size)])
     noise = smooth_spectrum(frequencies, left, width, 0.5 / step, kept)
-    return BandNoise(noise, _follows(lines[:, :count], target[:count], frequencies[:count]))
+    return BandNoise(noise, _follows(lines, target[:count], frequencies[:count]))
 
 
 def _explained(lines: Lines, target: Lines, frequencies: Array) -> tuple[Array, Array, Array]:
@@ -108,23 +121,22 @@ def _follows(lines: Lines, target: Lines, frequencies: Array) -> float:
         end = below
 
 
-def _functions_of(motion: Motion) -> Array:
-    """Return functions of the motion (K, N) that stand for whatever law a device may follow."""
+def _functions_of(motion: Motion) -> Iterator[Array]:
+    """Yield functions of the motion (N,) that stand for whatever law a device may follow."""
     x = motion.displacement - motion.displacement.mean()
     v, a = motion.velocity, motion.acceleration
     place, speed, push = (_unit(c) for c in (x, v, a))
-    products = [place**i * speed**j for i, j in _PRODUCTS]
-    sided = [np.abs(place), np.abs(speed), place * np.abs(place), speed * np.abs(speed)]
-    friction = []
+    for i, j in _PRODUCTS:
+        yield place**i * speed**j
+    yield from (np.abs(place), np.abs(speed), place * np.abs(place), speed * np.abs(speed))
     for share in _SCALES:
         sign = np.tanh(speed / share)
-        friction += [sign, sign * place, bristle_state(motion, share * float(np.std(x)))]
-    friction.append(np.tanh(speed / _SCALES[0]) * np.abs(push))
-    linear = [_unit(c) for c in motion.differentiate(np.array(_ORDERS))]
+        yield from (sign, sign * place, bristle_state(motion, share * float(np.std(x))))
+    yield np.tanh(speed / _SCALES[0]) * np.abs(push)
+    yield from (push, _unit(np.gradient(a)))
+    yield from (_unit(c) for c in motion.differentiate(np.array(_ORDERS)))
     late = np.linspace(-1.0, 1.0, x.size)
-    drift = list(np.polynomial.legendre.legvander(late, _SLOW).T[1:])
-    jerk = _unit(np.gradient(a))
-    return np.stack([*products, *sided, *friction, push, jerk, *linear, *drift])
+    yield from np.polynomial.legendre.legvander(late, _SLOW).T[1:]
 
 
 def _unit(column: Array) -> Array:

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import nnls
 
+from discover.motion_fit.harmonic_lines import harmonic_lines
 from discover.motion_fit.noise import density_between_lines
 from discover.motion_fit.noise_spectrum import noise_spectrum
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
@@ -24,14 +24,6 @@ _RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights st
 _PHASES = 360
 _REVERSAL = 3e-3  # of the speed amplitude
 BoolArray = NDArray[np.bool_]
-
-
-def _lines(solution: Array, count: int) -> Lines:
-    """Return lines from least-squares coefficients (1 + 2 count + ..., ...), mean square kept."""
-    pairs = solution[1 : 2 * count + 1].reshape(count, 2, -1)
-    phasors = (pairs[:, 0] + 1j * pairs[:, 1]) / np.sqrt(2.0)
-    lines = np.concatenate((solution[:1].reshape(1, -1).astype(np.complex128), phasors))
-    return lines.reshape((count + 1, *solution.shape[1:]))
 
 
 def _motion_at(time: Array, frequency: float, displacement: Lines) -> Motion:
@@ -114,22 +106,15 @@ def observe_sine(
         raise InputError(
             "sampling", expected="above 2.5 times the frequency", found="less", where=record.file
         )
-    design = harmonic_design(time, frequency, count, trend=duration * frequency > 2.0)
+    middle = float(time.mean()) if duration * frequency > 2.0 else None
     moving = _moving(time, frequency, displacement)
-    whole = design
-    design = whole[moving]
-    factor = cho_factor(design.T @ design)
-    solution = cho_solve(factor, design.T @ force[moving])
-    residual = np.where(moving, force - whole @ solution, 0.0)
-    time, force = time[moving], force[moving]
-    drift = float(solution[-1]) if design.shape[1] % 2 == 0 else 0.0
-    lines = _lines(solution, count)
-
-    def project(columns: Array) -> Lines:
-        flat = columns.reshape(-1, time.size)
-        found = _lines(cho_solve(factor, design.T @ flat.T), count).T
-        return found.reshape((*columns.shape[:-1], count + 1))
-
+    fit = harmonic_lines(time[moving], frequency, count, middle=middle)
+    (solution,) = fit.solve(force[None, moving])
+    residual = np.zeros(time.size)
+    residual[moving] = force[moving] - fit.fitted(solution)
+    time, force = fit.time, force[moving]
+    drift = 0.0 if middle is None else float(solution[-1])
+    (lines,) = fit.lines_of(solution[None])
     multiples: Array = frequency * np.arange(count + 1, dtype=np.float64)
     if record.uniform:
         density = density_between_lines(residual, record.step, frequency, multiples)
@@ -140,7 +125,7 @@ def observe_sine(
         noise = float(np.sqrt(spectrum.power))
     else:
         spectrum = None
-        freedom = max(time.size - design.shape[1], 1)
+        freedom = max(time.size - solution.size, 1)
         density = np.full(count + 1, 2.0 * duration / time.size * (residual @ residual) / freedom)
         noise = float(np.sqrt(residual @ residual / freedom))
     power = float(np.sum(np.abs(lines) ** 2))
@@ -148,7 +133,7 @@ def observe_sine(
     fitted_phase = displacement is None
     harmonic = np.arange(count + 1)
     if displacement is None:
-        displacement = _fit_phase(record, lines, project, time, frequency, variance)
+        displacement = _fit_phase(record, lines, fit.lines, time, frequency, variance)
     turn = np.exp(-1j * harmonic * (np.angle(displacement[1]) + 0.5 * np.pi))
     motion = _motion_at(time, frequency, displacement)
     speed = 2.0 * np.pi * frequency * float(abs(displacement[1]))
@@ -156,7 +141,7 @@ def observe_sine(
         omega=2.0 * np.pi * multiples,
         force=lines * turn,
         variance=variance,
-        project=lambda columns: project(columns) * turn,
+        project=lambda columns: fit.lines(columns) * turn,
         frequency=frequency,
         amplitude=float(abs(displacement[1])),
         speed=speed,

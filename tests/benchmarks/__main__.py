@@ -1,4 +1,4 @@
-"""Run the benchmarks, print their tables and keep them beside this file.
+"""Run the benchmarks, print their tables, keep them beside this file and in the docs.
 
 ``python -m tests.benchmarks`` runs all; names (``fractional``) run those.
 """
@@ -9,6 +9,7 @@ import importlib
 import sys
 from pathlib import Path
 
+from tests.benchmarks.page import PAGE, page
 from tests.benchmarks.results import machine, markdown
 
 _HERE = Path(__file__).parent
@@ -27,6 +28,7 @@ def main(names: list[str]) -> int:
         text = markdown((module.__doc__ or name).splitlines()[0], module.rows(), about)
         print(text)
         (_HERE / f"RESULTS-{name}.md").write_text(text, encoding="utf-8")
+    PAGE.write_text(page(), encoding="utf-8")
     return 0
 
 

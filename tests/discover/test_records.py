@@ -1,5 +1,7 @@
 """Records in memory: what they refuse, and their times."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -80,3 +82,16 @@ def test_a_digitised_curve_is_left_as_it_is():
     curve = Record("r.csv", time, np.sin(time), frequency=1.0, amplitude=0.01, uniform=False)
     assert curve.even is curve
     assert curve.gaps == 0
+
+
+def test_what_is_found_in_a_record_is_asked_for_once():
+    time = np.arange(8.0)
+    record, asked = Record("r", time, time.copy()), []
+
+    def last(one):
+        asked.append(one.file)
+        return float(one.force[-1])
+
+    assert (record.once(last), record.once(last), asked) == (7.0, 7.0, ["r"])
+    other = replace(record, force=np.zeros(8))
+    assert (other.once(last), asked) == (0.0, ["r", "r"])
