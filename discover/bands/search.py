@@ -222,17 +222,25 @@ class BandSearch:
         weighed = answer.value + ways.log_prior
         k = int(weighed.argmax())
         rest = np.delete(weighed, k)
-        value, best, prior, chosen = answer.value[k], weighed[k], ways.log_prior[k], answer.best[k]
-        few = self.only(chosen)
-        while ways.cuts[k].width and ways.cuts[k].steps[0] > _CLOSE:
-            ways = finer(ways.cuts[k], now.shares, now.brackets, self._along(now))
-            begun = np.tile(np.arange(chosen.size), (len(ways.cuts), 1))
-            near = few.many(place, scale, ways.shares, begun).value
-            around = near + ways.log_prior + prior
-            k, best = int(around.argmax()), logsumexp(around)
-            value, prior = near[k], prior + ways.log_prior[k]
+        cut, shares, brackets = ways.cuts[k], ways.shares[k], ways.brackets[k]
+        value, best, chosen = answer.value[k], weighed[k], answer.best[k]
+        for _ in range(_ROUNDS if cut.width else 0):
+            prior, cut = ways.log_prior[k], replace(cut, steps=ways.cuts[k].steps)
+            few = self.only(chosen)
+            while cut.steps[0] > _CLOSE:
+                near = finer(cut, now.shares, now.brackets, self._along(now))
+                begun = np.tile(np.arange(chosen.size), (len(near.cuts), 1))
+                values = few.many(place, scale, near.shares, begun).value
+                around = values + near.log_prior + prior
+                i, best = int(around.argmax()), logsumexp(around)
+                value, prior = values[i], prior + near.log_prior[i]
+                cut, shares, brackets = near.cuts[i], near.shares[i], near.brackets[i]
+            before = chosen  # the best variants depend on where the change is, and it on them
+            chosen = self.many(place, scale, shares[None], chosen[None]).best[0]
+            if np.array_equal(before, chosen):
+                break
         others = float(logsumexp([best, *rest]) - value)
-        return Way(ways.cuts[k], ways.shares[k], ways.brackets[k], chosen, others)
+        return Way(cut, shares, brackets, chosen, others)
 
     def of_best_core(self, by_variant: Array) -> int:
         """Return the best variant of the most probable core."""

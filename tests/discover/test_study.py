@@ -159,3 +159,20 @@ def test_what_was_asked_for_and_could_not_be_done_is_said():
     warned = " ".join(f.text for f in study.findings if f.level == "warning")
     assert "need the device's geometry" in warned
     assert "4 bands were asked for" in warned
+
+
+def test_a_gradual_boundary_is_told_with_its_place_and_width():
+    below, above = fractional(*M1), fractional(*M2)
+    scale = 0.4  # of the logistic curve in the logarithm of frequency
+
+    def force(amplitude, omega, theta):
+        upper = 1.0 / (1.0 + (omega / (2.0 * np.pi * 1.2)) ** (-1.0 / scale))
+        mixed = upper * above(amplitude, omega, theta)
+        return mixed + (1.0 - upper) * below(amplitude, omega, theta)
+
+    study = run_study(campaign(force, frequencies=tuple(np.geomspace(0.1, 15.0, 16))))
+    assert [b.structure for b in study.bands] == ["FOIM", "FOIM"]
+    (boundary,) = study.boundaries
+    assert study.coordinate == "frequency"
+    assert boundary.coordinate == pytest.approx(1.2, rel=0.1)
+    assert boundary.width == pytest.approx(2.0 * np.log(9.0) * scale, rel=0.2)

@@ -1,0 +1,36 @@
+"""No structure is stated for terms that are idle where terms alone predict."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from discover.bands.extras import composite, found
+from discover.bands.told import told
+from discover.posterior.spread import idle
+from discover.study import StudyOptions
+from discover.study.prepare import prepare
+from tests.discover.exact import campaign
+
+
+def yielding(amplitude, omega, theta):
+    """A force that saturates, late by a displacement: no inertance and no power of speed."""
+    late = min(1.0, 1e-3 / amplitude)
+    v = amplitude * omega * np.cos(theta + late)
+    return 400.0 * np.tanh(v / 0.03) + 60.0 * np.tanh(v / 0.2) ** 3
+
+
+def test_idle_terms_make_no_structure():
+    records = campaign(yielding, frequencies=(0.1, 0.3, 1.0, 3.0), noise=0.002)
+    device = replace(prepare(records, StudyOptions()).device, extras=(), bands=1)
+    before = found(device)
+    after = told(device, before)
+    assert not before.banded.quiet
+    assert not working(device, before)
+    assert working(device, after)
+
+
+def working(device, answer):
+    """Tell whether every term of the bands' structures makes a force of its sign."""
+    best = device.assessor.predicting(composite(device, answer))
+    count = sum(len(p.terms) for v in answer.banded.variants for p in answer.variants[v].parts)
+    return not any(place < count for place in idle(best))
