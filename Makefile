@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: study test sweep check bench calibration blind notebooks clean
+.PHONY: study test sweep check bench calibration blind notebooks docs clean
 
 study: $(VENV)/.installed ## discover on the shipped campaign; prints the verdict and the report's path
 	@$(BIN)/inerter discover --jobs $(JOBS)
@@ -35,6 +35,10 @@ blind: $(VENV)/.installed-dev ## the blind study of missing effects, both sets; 
 notebooks: $(VENV)/.installed-notebooks ## run every notebook and keep its pictures
 	$(BIN)/jupyter nbconvert --to notebook --execute --inplace notebooks/*.ipynb
 
+docs: $(VENV)/.installed-docs ## the documentation's pages, in build/docs; a warning stops it
+	$(BIN)/python -m sphinx -W --keep-going -q -E -d build/doctrees docs build/docs
+	@echo build/docs/index.html
+
 clean: ## remove the environment and caches
 	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
 
@@ -48,6 +52,10 @@ $(VENV)/.installed: pyproject.toml | $(BIN)/python
 
 $(VENV)/.installed-dev: pyproject.toml | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-docs: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[docs]'
 	@touch $@ $(VENV)/.installed
 
 $(VENV)/.installed-notebooks: pyproject.toml | $(BIN)/python

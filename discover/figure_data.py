@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from discover.residual_data import Response
 from models.checks import Array
 
 
-@dataclass(frozen=True)
-class RecordCurves:
-    """One record as pictures show it: where it stands in the plan, and measured beside model."""
+@dataclass(frozen=True, kw_only=True)
+class ShownRecord:
+    """One record as pictures show it: measured, beside what models say."""
 
     file: str
     """Name as in the campaign."""
@@ -17,34 +18,82 @@ class RecordCurves:
     """Kind of record: "sine", "periodic", "transient" or "trajectory"."""
     held_out: bool
     """Never fitted, only predicted."""
-    band: int | None
-    """Index into the study's bands; None where no band holds it."""
-    structure: str
-    """Structure of that band; "" where there is none."""
     frequency: float | None
     """Hz; None for a record that is no sine test."""
     amplitude: float | None
     """m, displacement amplitude; None for a record that is no sine test."""
-    dean_paper: float | None
-    """Dean number at the speed amplitude, the paper's convention; None without a device."""
-    dean_standard: float | None
-    """The same by the standard convention."""
     time: Array
-    """(n,) s, two cycles of a sine test, else about twelve turns; at most 600 points."""
+    """(n,) s, two cycles of a sine test, else three stretches of a few turns; at most 600."""
     displacement: Array
     """(n,) m."""
     velocity: Array
     """(n,) m/s."""
     force: Array
     """(n,) N, measured."""
+    noise_percent: float | None
+    """100 ||noise||/||F||."""
+    responses: tuple[Response, ...] = ()
+    """One for each of the predictions, in their order; empty where not drawn."""
+
+    @property
+    def predictions(self) -> tuple[tuple[str, Array], ...]:
+        """A name and a force (n,), N, of each model; the one that matters most first."""
+        return ()
+
+    @property
+    def errors_percent(self) -> tuple[float | None, ...]:
+        """100 ||e||/||F|| of each prediction."""
+        return ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordCurves(ShownRecord):
+    """One record of a study: where it stands in the plan, and measured beside model."""
+
+    band: int | None
+    """Index into the study's bands; None where no band holds it."""
+    structure: str
+    """Structure of that band; "" where there is none."""
+    dean_paper: float | None
+    """Dean number at the speed amplitude, the paper's convention; None without a device."""
+    dean_standard: float | None
+    """The same by the standard convention."""
     model_force: Array
     """(n,) N, by the study's model."""
     error_percent: float | None
     """RMSE over the force's peak, percent."""
     relative_error_percent: float | None
     """100 ||e||/||F||."""
-    noise_percent: float | None
-    """100 ||noise||/||F||."""
+
+    @property
+    def predictions(self) -> tuple[tuple[str, Array], ...]:
+        """The study's model."""
+        return (("model", self.model_force),)
+
+    @property
+    def errors_percent(self) -> tuple[float | None, ...]:
+        """The study's model's."""
+        return (self.relative_error_percent,)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SimulatedRecord(ShownRecord):
+    """One record of a simulation, beside every model's force."""
+
+    forces: tuple[tuple[str, Array], ...]
+    """A name and a force (n,), N, of each model, best first."""
+    misses: tuple[float | None, ...]
+    """100 ||e||/||F|| of each."""
+
+    @property
+    def predictions(self) -> tuple[tuple[str, Array], ...]:
+        """The models' forces, best first."""
+        return self.forces
+
+    @property
+    def errors_percent(self) -> tuple[float | None, ...]:
+        """Of each model."""
+        return self.misses
 
 
 @dataclass(frozen=True)
@@ -123,36 +172,28 @@ class PlanFigureData:
     """The same by the standard convention."""
 
 
-@dataclass(frozen=True)
-class GapCurves:
+@dataclass(frozen=True, kw_only=True)
+class GapCurves(ShownRecord):
     """One record of a gap search: measured, and the model before and after it was mended."""
 
-    file: str
-    """Name as in the campaign."""
-    held_out: bool
-    """Never fitted, only predicted."""
-    frequency: float | None
-    """Hz; None for a record that is no sine test."""
-    amplitude: float | None
-    """m, displacement amplitude; None for a record that is no sine test."""
-    time: Array
-    """(n,) s, two cycles of a sine test, else about twelve turns; at most 600 points."""
-    displacement: Array
-    """(n,) m."""
-    velocity: Array
-    """(n,) m/s."""
-    force: Array
-    """(n,) N, measured."""
     before: Array
     """(n,) N, the baseline's force."""
     after: Array
     """(n,) N, the mended model's force."""
-    noise_percent: float | None
-    """100 ||noise||/||F||."""
     gap_before_percent: float
     """100 ||F - baseline||/||F||."""
     gap_after_percent: float
     """100 ||F - mended model||/||F||."""
+
+    @property
+    def predictions(self) -> tuple[tuple[str, Array], ...]:
+        """The mended model, then the baseline."""
+        return (("after", self.after), ("before", self.before))
+
+    @property
+    def errors_percent(self) -> tuple[float | None, ...]:
+        """Likewise."""
+        return (self.gap_after_percent, self.gap_before_percent)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from discover.figure_data import SimulatedRecord
 from discover.header import document_header
 from discover.motion_fit import Observation, observe_all
+from discover.record_curves import record_view, response
 from discover.records import Campaign, Finding, checked_campaign
 from discover.rows import (
     Accuracy,
@@ -21,6 +23,7 @@ from discover.rows import (
     noise_percent,
     pooled_percent,
 )
+from discover.words import model_names
 from models.checks import Array, InputError, shown
 from models.constitutive import ForceModel, SegmentedModel
 from models.flow import dean_per_speed
@@ -164,6 +167,25 @@ class ForceComparison:
             "models": [m.to_dict() for m in self.models],
             "findings": [f.to_dict() for f in self.findings],
         }
+
+    def shown(self) -> tuple[SimulatedRecord, ...]:
+        """Return what pictures need of the records, in the campaign's order."""
+        drawn = []
+        ranked = self.ranked
+        names = model_names([m.name for m in ranked])
+        for index, first in enumerate(ranked[0].records):
+            view = record_view(first.accuracy)
+            all_models = [m.records[index].accuracy for m in ranked]
+            forces = [a.model_force[view.chosen] for a in all_models]
+            drawn.append(
+                SimulatedRecord(
+                    **view.measured,
+                    responses=tuple(response(a) for a in all_models),
+                    forces=tuple(zip(names, forces, strict=True)),
+                    misses=tuple(a.relative_percent for a in all_models),
+                )
+            )
+        return tuple(drawn)
 
     def tables(self) -> dict[str, str]:
         """Return one CSV a record, by file name: motion, measured force, each model's force."""

@@ -141,6 +141,26 @@ def listed(items: Iterable[str], last: str = "and") -> str:
     return f"{', '.join(parts[:-1])} {last} {parts[-1]}"
 
 
+def model_names(given: Sequence[str]) -> list[str]:
+    """Return models' names as pictures have room for: of a ``model.json`` that of its folder.
+
+    Where two would be alike they stay as given.
+
+    Examples
+    --------
+    >>> model_names(["foim", "inerter-out/discover-rig/model.json", "mine.json"])
+    ['foim', 'discover-rig', 'mine']
+    >>> model_names(["a/x/model.json", "b/x/model.json"])
+    ['a/x/model.json', 'b/x/model.json']
+    """
+    short = []
+    for name in given:
+        *folders, file = name.replace("\\", "/").split("/")
+        inside = file == "model.json" and folders
+        short.append(folders[-1] if inside else file.removesuffix(".json"))
+    return [s if short.count(s) == 1 else g for s, g in zip(short, given, strict=True)]
+
+
 def counted(number: int, noun: str) -> str:
     """Return a number with its noun.
 

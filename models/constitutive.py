@@ -384,7 +384,7 @@ def _friction(device: Device, friction: float | None) -> float:
 
 
 def ioim_laminar(device: Device, *, friction: float | None = None) -> ForceModel:
-    """Return the laminar integer-order model: b a + c1 v|v| + c2 v + f0 sign v (Eq. 5).
+    """Return the laminar integer-order model: ``b a + c1 v|v| + c2 v + f0 sign v`` (Eq. 5).
 
     Examples
     --------
@@ -405,9 +405,10 @@ def ioim_laminar(device: Device, *, friction: float | None = None) -> ForceModel
 
 
 def ioim_turbulent(device: Device, *, friction: float | None = None) -> ForceModel:
-    """Return the turbulent model: b a + c1 |v|^1.75 sign v + c2 v|v| + c3 v + f0 sign v (Eq. 6).
+    """Return the turbulent model (Eq. 6).
 
-    Without a piston clearance the film term c3 is left out.
+    It is ``b a + c1 |v|^1.75 sign v + c2 v|v| + c3 v + f0 sign v``. Without a piston clearance
+    the film term c3 is left out.
     """
     c1, c2, c3 = device.turbulent_coefficients
     film = () if c3 is None else (FittedTerm("viscous-damping", c3),)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import logsumexp
 
 from models.checks import Array, Indices
 
@@ -22,6 +23,8 @@ _PLACES = 9
 _WIDTHS = (0.6, 1.2, 2.4)
 """Of gradual changes that are weighed beside sharp ones: finer ones follow around the best."""
 _FINER = 3
+_GRADUAL = 0.1
+"""Chance beforehand that a boundary is gradual."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +158,7 @@ def divided_again(
 ) -> Divisions | None:
     """Return every way to divide a band of a division (B, U); None where there is none.
 
-    Half of the prior is that of all sharp ones, half that of all gradual ones.
+    A tenth of the prior is that of all gradual ones.
     """
     found = []
     for name, values in coordinates.items():
@@ -168,16 +171,16 @@ def divided_again(
             whole, kept = refined(shares, band, parts)
             cuts = [Cut(name, band, float(np.log(ends[k]).mean()), 0.0, steps) for k in kept]
             own = tuple(_with(brackets, ends[k]) for k in kept)
-            found.append(_even(cuts, whole, own))
+            found.append(_even(cuts, whole, own, 1.0 - _GRADUAL))
             cuts = [Cut(name, band, float(p), w, steps) for w in _WIDTHS for p in inside[1:-1]]
-            found.append(_along(cuts, shares, brackets, values))
+            found.append(_along(cuts, shares, brackets, values, _GRADUAL))
     found = [f for f in found if f.cuts]
     if not found:
         return None
     log_prior = np.concatenate([f.log_prior for f in found])
     return Divisions(
         tuple(c for f in found for c in f.cuts), np.concatenate([f.shares for f in found]),
-        tuple(b for f in found for b in f.brackets), log_prior - np.log(len(found)),
+        tuple(b for f in found for b in f.brackets), log_prior - logsumexp(log_prior),
     )  # fmt: skip
 
 
@@ -205,18 +208,21 @@ def finer(
 
 
 def _along(
-    cuts: Sequence[Cut], shares: Array, brackets: Brackets, values: Array
+    cuts: Sequence[Cut], shares: Array, brackets: Brackets, values: Array, chance: float = 1.0
 ) -> Divisions:
     """Return gradual ways along a coordinate (U,)."""
     _, ends = sharp(values)
     places, widths = np.exp([c.place for c in cuts]), np.array([c.width for c in cuts])
     whole, kept = refined(shares, cuts[0].band, gradual(values, places, widths))
     far = [np.abs(np.log(ends) - cuts[k].place).max(axis=1).argmin() for k in kept]
-    return _even([cuts[k] for k in kept], whole, tuple(_with(brackets, ends[e]) for e in far))
+    own = tuple(_with(brackets, ends[e]) for e in far)
+    return _even([cuts[k] for k in kept], whole, own, chance)
 
 
-def _even(cuts: Sequence[Cut], shares: Array, brackets: tuple[Brackets, ...]) -> Divisions:
-    prior = np.full(len(cuts), -float(np.log(max(len(cuts), 1))))
+def _even(
+    cuts: Sequence[Cut], shares: Array, brackets: tuple[Brackets, ...], chance: float
+) -> Divisions:
+    prior = np.full(len(cuts), float(np.log(chance / max(len(cuts), 1))))
     return Divisions(tuple(cuts), shares, brackets, prior)
 
 

@@ -28,9 +28,11 @@ def told(device: Device, found: Found) -> Found:
             own = [t.id for p in found.variants[place].parts for t in p.terms]
             worst = [own[k - first] for k in doubtful if first <= k < first + len(own)][:1]
             first += len(own)
-            for v, variant in enumerate(found.variants):
-                if set(worst) & {p.id for p in variant.parts}:
-                    by_variant[band, v] = -np.inf
+            held = np.array([
+                bool(set(worst) & {p.id for p in variant.parts}) for variant in found.variants
+            ])
+            if np.any(np.isfinite(by_variant[band, ~held])):  # else nothing may take its place
+                by_variant[band, held] = -np.inf
         if np.array_equal(by_variant, banded.by_variant):
             break
         variants = tuple(found.search.of_best_core(values) for values in by_variant)

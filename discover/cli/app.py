@@ -14,6 +14,7 @@ import typer
 from discover._version import __version__
 from discover.cli.batch import batch
 from discover.cli.check import check
+from discover.cli.compare import compare
 from discover.cli.design import design
 from discover.cli.discover import discover
 from discover.cli.gap import gap
@@ -40,7 +41,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for verb in (init, check, discover, gap, batch, simulate, synth, design, reproduce):
+for verb in (init, check, discover, gap, compare, batch, simulate, synth, design, reproduce):
     app.command(verb.__name__)(verb)
 
 

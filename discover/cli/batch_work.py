@@ -52,19 +52,17 @@ def _worked(item: Item) -> str:
     from discover.document import json_text
     from discover.readers import read_campaign
     from discover.report.folder import write_folder
-    from discover.report.study import study_figures, study_report
+    from discover.report.study import study_files
     from discover.study import StudyOptions, run_study
 
     campaign = read_campaign(item.campaign)
     study = run_study(campaign, StudyOptions(seed=item.seed))
     document = study.to_dict()
-    pictures = study_figures(document, study.figure_data)
     command = shlex.join(["inerter", "discover", item.given, "--seed", str(item.seed)])
-    files = {
+    files: dict[str, str | bytes] = {
         "study.json": json_text(document),
         "model.json": json_text(study.model_dict()),
-        "report.html": study_report(document, study.figure_data, pictures, command=command),
-        **{f"figures/{name}.svg": svg for name, svg in pictures.items()},
+        **study_files(document, study.figure_data, command=command),
     }
     error = ""
     if item.model is not None:
@@ -77,22 +75,21 @@ def _worked(item: Item) -> str:
     return error
 
 
-def _gap_files(campaign: Any, item: Item, model: str) -> dict[str, str]:
+def _gap_files(campaign: Any, item: Item, model: str) -> dict[str, str | bytes]:
     from discover.cli.gap_answer import gap_answer
     from discover.document import json_text
-    from discover.report.gap import gap_figures, gap_report
+    from discover.report.gap import gap_files
 
     document, found = gap_answer(campaign, model, seed=item.seed)
-    pictures = gap_figures(document, found.figure_data)
     command = shlex.join(
         ["inerter", "gap", item.given, "--model", model, "--seed", str(item.seed)]
     )
-    return {
-        "gap/gap.json": json_text(document),
-        "gap/model.json": json_text(found.model_dict()),
-        "gap/report.html": gap_report(document, found.figure_data, pictures, command=command),
-        **{f"gap/figures/{name}.svg": svg for name, svg in pictures.items()},
+    files: dict[str, str | bytes] = {
+        "gap.json": json_text(document),
+        "model.json": json_text(found.model_dict()),
+        **gap_files(document, found.figure_data, command=command),
     }
+    return {f"gap/{name}": content for name, content in files.items()}
 
 
 def _line(error: Exception) -> str:

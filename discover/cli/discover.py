@@ -23,6 +23,7 @@ def discover(
     coordinate: options.Coordinate = None,
     convention: options.Convention = "paper",
     criterion: options.Criterion = 100.0,
+    figures: options.Figures = None,
     out: options.Out = None,
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
@@ -36,13 +37,14 @@ def discover(
     order_grid = options.grid(orders, where="--orders", at_least=-1.0, at_most=2.0)
     exponent_grid = options.grid(exponents, where="--exponents", at_least=0.1, at_most=5.0)
     number("criterion", criterion, above=0.0, at_most=1e6, where="--criterion")
+    formats = options.figure_formats(figures)
     source = shipped_campaign() if campaign is None else campaign
     folder = result_folder("discover", source, out)
 
     # Loaded here: --help and complaints about options need no numerics.
     from discover.document import json_text
     from discover.readers import read_campaign
-    from discover.report.study import study_figures, study_report
+    from discover.report.study import study_files
     from discover.study import StudyOptions, run_study
     from discover.study.verdict import verdict_lines
     from discover.words import error_lines
@@ -66,13 +68,11 @@ def discover(
         )
     with working("Drawing"):
         document = study.to_dict()
-        figures = study_figures(document, study.figure_data)
         invocation: Invocation = context.obj
-        page = study_report(
-            document, study.figure_data, figures, command=invocation.repeat(seed=seed)
+        files = study_files(
+            document, study.figure_data, command=invocation.repeat(seed=seed), formats=formats
         )
-    files = {"report.html": page, "model.json": json_text(study.model_dict())}
-    files |= {f"figures/{name}.svg": svg for name, svg in figures.items()}
+    files["model.json"] = json_text(study.model_dict())
     deliver(
         document,
         name="study.json",

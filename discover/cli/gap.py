@@ -49,6 +49,7 @@ def gap(
             help="motion: besides, move the [system] with the model, as it is and mended.",
         ),
     ] = "force",
+    figures: options.Figures = None,
     out: options.Out = None,
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
@@ -57,6 +58,7 @@ def gap(
     """Find where a model and the records disagree, name what is missing, and add it."""
     one_of("quantity", on, ("force", "motion"), where="--on")
     only = options.identifiers(effects, where="--effects")
+    formats = options.figure_formats(figures)
     folder = result_folder("gap", campaign, out, model=model)
 
     # Loaded here: --help and complaints about options need no numerics.
@@ -66,7 +68,7 @@ def gap(
     from discover.gap import term_ids
     from discover.motion_gap import motion_before_and_after, require_system
     from discover.readers import read_campaign
-    from discover.report.gap import gap_figures, gap_lines, gap_report
+    from discover.report.gap import gap_files, gap_lines
     from discover.words import warning_lines
     from models.terms import TERMS, own_terms
 
@@ -94,13 +96,11 @@ def gap(
         with working("Moving the carried system"):
             document["motion"] = motion_before_and_after(measured, found.given, found.model)
     with working("Drawing"):
-        figures = gap_figures(document, found.figure_data)
         invocation: Invocation = context.obj
-        page = gap_report(
-            document, found.figure_data, figures, command=invocation.repeat(seed=seed)
+        files = gap_files(
+            document, found.figure_data, command=invocation.repeat(seed=seed), formats=formats
         )
-    files = {"report.html": page, "model.json": json_text(found.model_dict())}
-    files |= {f"figures/{name}.svg": svg for name, svg in figures.items()}
+    files["model.json"] = json_text(found.model_dict())
     deliver(
         document,
         name="gap.json",

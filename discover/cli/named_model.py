@@ -51,7 +51,10 @@ def named_model(name: str, device: Device | None, *, where: str = "--model") -> 
     if name not in NAMES:
         return _from_file(name, where=where)
     if device is None:
-        raise InputError(name, expected="used with a device", found="none", where=where)
+        raise InputError(
+            name, expected="used with a device ([device] of campaign.toml; `fit:` needs none)",
+            found="none", where=where,
+        )  # fmt: skip
     if name.startswith("ioim"):
         make = ioim_laminar if name == "ioim-laminar" else ioim_turbulent
         if device.coulomb_friction is not None:

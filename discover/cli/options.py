@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from models.checks import InputError, number, shown
+from models.checks import InputError, number, one_of, shown
 
 DEFAULT_SEED = 0
 MOST_VALUES = 1000
@@ -79,6 +79,17 @@ Convention = Annotated[
 ]
 Criterion = Annotated[
     float, typer.Option("--criterion", help="Dean number that the check holds the boundary to.")
+]
+FIGURE_FORMATS = ("png", "pdf")
+"""Of pictures, beside SVG, which is always written."""
+Figures = Annotated[
+    str | None,
+    typer.Option(
+        "--figures",
+        metavar="png,pdf",
+        help="Write each picture in these formats too, beside SVG.",
+        show_default=False,
+    ),
 ]
 EffectFiles = Annotated[
     list[Path] | None,
@@ -167,3 +178,22 @@ def identifiers(text: str | None, *, where: str) -> tuple[str, ...] | None:
     if twice is not None:
         raise InputError("list", expected="each id once", found=f"{twice} twice", where=where)
     return parts
+
+
+def figure_formats(text: str | None) -> tuple[str, ...]:
+    """Return the formats of pictures that are asked for beside SVG.
+
+    Raises
+    ------
+    InputError
+        For another one.
+
+    Examples
+    --------
+    >>> figure_formats("png, pdf"), figure_formats("svg"), figure_formats(None)
+    (('png', 'pdf'), (), ())
+    """
+    asked = identifiers(text, where="--figures") or ()
+    for one in asked:
+        one_of("format", one, ("svg", *FIGURE_FORMATS), where="--figures")
+    return tuple(one for one in asked if one != "svg")

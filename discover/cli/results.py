@@ -143,7 +143,7 @@ def deliver(
     *,
     name: str,
     folder: Path,
-    files: Mapping[str, str],
+    files: Mapping[str, str | bytes],
     summary: Sequence[str],
     as_json: bool,
 ) -> None:

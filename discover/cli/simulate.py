@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from discover.cli import options
+from discover.cli.invocation import Invocation
 from discover.cli.results import deliver, result_folder, working
 from models.checks import InputError, shown
 
@@ -22,6 +23,7 @@ def simulate(
         ),
     ],
     effect_files: options.EffectFiles = None,
+    figures: options.Figures = None,
     out: options.Out = None,
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
@@ -29,7 +31,8 @@ def simulate(
 ) -> int:
     """Predict the force of each model for the measured motion, beside the measured force.
 
-    Several models are ranked on held-out records. Writes simulation.json and one CSV a record.
+    Several models are ranked on held-out records. Writes simulation.json, a page, and one
+    CSV a record.
     """
     *names, campaign = arguments
     if not names:
@@ -40,13 +43,14 @@ def simulate(
     twice = next((n for n in names if names.count(n) > 1), None)
     if twice is not None:
         raise InputError("models", expected="each once", found=f"{twice} twice", where="simulate")
+    formats = options.figure_formats(figures)
     folder = result_folder("simulate", campaign, out)
 
     # Loaded here: --help and complaints about options need no numerics.
     from discover.cli.named_model import named_model
     from discover.cli.own_effects import own_effects
     from discover.readers import read_campaign
-    from discover.report.simulation import simulation_lines
+    from discover.report.simulation import simulation_files, simulation_lines
     from discover.simulate import simulate_forces
     from models.terms import own_terms
 
@@ -58,12 +62,17 @@ def simulate(
         models = {name: named_model(name, measured.device, where=name) for name in names}
     with working(f"Predicting {len(measured.records)} records"):
         answer = simulate_forces(measured, models, seed=seed, jobs=jobs)
-        document, tables = answer.to_dict(), answer.tables()
+        document = answer.to_dict()
+    with working("Drawing"):
+        invocation: Invocation = context.obj
+        files = simulation_files(
+            document, answer.shown(), command=invocation.repeat(seed=seed), formats=formats
+        )
     deliver(
         document,
         name="simulation.json",
         folder=folder,
-        files=tables,
+        files={**files, **answer.tables()},
         summary=simulation_lines(document),
         as_json=as_json,
     )

@@ -9,8 +9,8 @@ import numpy as np
 from discover.figure_data import EffectShape, GapCurves
 from discover.gap.result import NamedEffect
 from discover.motion_fit import Observation
+from discover.record_curves import record_view, response
 from discover.rows import Accuracy, RecordRows, force_at_samples
-from discover.shown_samples import shown_samples
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
@@ -22,21 +22,12 @@ _SCATTERS = 4.0  # times its range, that a force varies by along what it does no
 
 def curves(was: Accuracy, now: Accuracy) -> GapCurves:
     """Return a record's curves, decimated: measured, and the model before and after."""
-    o = now.observation
-    sine = o.kind == "sine"
-    chosen = shown_samples(o)
+    view = record_view(now)
     return GapCurves(
-        file=o.file,
-        held_out=o.held_out,
-        frequency=o.frequency if sine else None,
-        amplitude=o.amplitude if sine else None,
-        time=o.time[chosen] - o.time[0],
-        displacement=o.at_samples(o.motion.displacement)[chosen],
-        velocity=o.at_samples(o.motion.velocity)[chosen],
-        force=o.measured[chosen],
-        before=was.model_force[chosen],
-        after=now.model_force[chosen],
-        noise_percent=now.noise_percent,
+        **view.measured,
+        responses=(response(now), response(was)),
+        before=was.model_force[view.chosen],
+        after=now.model_force[view.chosen],
         gap_before_percent=was.relative_percent,
         gap_after_percent=now.relative_percent,
     )

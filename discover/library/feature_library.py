@@ -211,7 +211,7 @@ class InerterLibrary(BaseFeatureLibrary):  # type: ignore[misc]
 
         Returns
         -------
-        ndarray, shape (N, n_output_features_), or list of them
+        ndarray, shape (N, ``n_output_features_``), or list of them
             In SI units of the terms.
         """
         check_is_fitted(self)

@@ -10,13 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from discover.motion_fit.noise import power_density
 from discover.sine_fit import harmonic_design
 from models.checks import Array
+from models.compiled import compiled
 
 FEWEST_CYCLES = 2.5
 _ENOUGH_CYCLES = 6.0
@@ -198,7 +198,7 @@ def _left_by(
     return np.asarray(1.0 - np.sum(np.abs(lines) ** 2, axis=0) / power)
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled(cache=True)
 def _lag_products(
     begin: NDArray[np.int32], places: NDArray[np.int32], weights: Array, at: NDArray[np.intp],
     rows: NDArray[np.intp], size: int,
@@ -236,7 +236,7 @@ def _same_phase(phase: Array, order: NDArray[np.intp], half: float) -> csr_array
     return csr_array((weights, places, begin), shape=(size, size))
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled(cache=True)
 def _lines_through(
     around: Array, order: NDArray[np.intp], first: NDArray[np.intp], last: NDArray[np.intp],
     begin: NDArray[np.intp], half: float,

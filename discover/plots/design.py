@@ -17,8 +17,8 @@ from discover.plots.style import (
     MUTED,
     house_style,
     new_figure,
-    to_svg,
 )
+from discover.plots.svg import to_svg
 
 
 def sections(document: Mapping[str, Any]) -> str:

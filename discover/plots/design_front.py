@@ -12,8 +12,8 @@ from discover.plots.style import (
     house_style,
     new_figure,
     plain_log_axis,
-    to_svg,
 )
+from discover.plots.svg import to_svg
 
 _COLOURS = ("#56b4e9", ACCENT, "#009e73", "#8d5aa6", "#e69f00")
 _MARKERS = ("v", "o", "^", "s", "D")

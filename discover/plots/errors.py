@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from discover.figure_data import RecordCurves, StudyFigureData
+from discover.plots.loops import record_label
 from discover.plots.style import (
     INK,
     MUTED,
@@ -12,12 +13,14 @@ from discover.plots.style import (
     new_figure,
     plain_log_axis,
     record_marker,
-    to_svg,
 )
+from discover.plots.svg import series, to_svg
 
 _IN_ONE = 18
 _ROW = 18.0  # CSS pixels
 _LONGEST_NAME = 26
+_EDGE = 0.06  # of the range of errors (logarithms), free at each side
+_LEAST_EDGE = 1.02
 
 
 def error_by_record(data: StudyFigureData) -> list[str]:
@@ -32,7 +35,8 @@ def error_by_record(data: StudyFigureData) -> list[str]:
     values = [r.relative_error_percent or 0.0 for r in records]
     values += [r.noise_percent for r in records if r.noise_percent]
     positive = [v for v in values if v > 0.0] or [1.0]
-    limits = (min(positive) / 1.3, max(positive) * 1.3)
+    edge = max((max(positive) / min(positive)) ** _EDGE, _LEAST_EDGE)
+    limits = (min(positive) / edge, max(positive) * edge)
     half = len(records) if len(records) <= _IN_ONE else -(-len(records) // 2)
     parts = [records[i : i + half] for i in range(0, len(records), half)]
     return [
@@ -69,13 +73,15 @@ def _rows(
                 linewidth=1.6,
                 zorder=1,
             )
+        series(axes.lines[0], "noise floor")
         for structure, held_out in sorted({(r.structure, r.held_out) for r in records}):
             group = [
                 (r.relative_error_percent, i)
                 for i, r in enumerate(records)
                 if (r.structure, r.held_out) == (structure, held_out)
             ]
-            axes.plot(*zip(*group, strict=True), **record_marker(structure, held_out=held_out))
+            look = record_marker(structure, held_out=held_out)
+            series(axes.plot(*zip(*group, strict=True), **look), str(look["label"]))
         axes.set_ylim(max(height, len(records), 3) - 0.4, -0.6)
         axes.set_yticks(range(len(records)), [_label(r) for r in records])
         axes.tick_params(axis="y", length=0, labelsize=10, labelcolor=INK)
@@ -88,8 +94,5 @@ def _rows(
 
 
 def _label(record: RecordCurves) -> str:
-    if record.frequency and record.amplitude:
-        return f"{record.frequency:.3g} Hz, {1e3 * record.amplitude:.3g} mm"
-    if len(record.file) <= _LONGEST_NAME:
-        return record.file
-    return record.file[: _LONGEST_NAME - 1] + "…"
+    name = record_label(record)
+    return name if len(name) <= _LONGEST_NAME else name[: _LONGEST_NAME - 1] + "…"

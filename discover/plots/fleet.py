@@ -15,8 +15,8 @@ from discover.plots.style import (
     house_style,
     new_figure,
     plain_log_axis,
-    to_svg,
 )
+from discover.plots.svg import to_svg
 
 _NAMED = 40  # devices that still have room for their names
 _ROW, _THIN = 18.0, 5.0  # CSS pixels

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from discover.figure_data import EffectShape, GapCurves, GapFigureData
+from discover.figure_data import EffectShape, GapFigureData
 from discover.plots.style import (
     ACCENT,
+    BEFORE,
     INK,
     MODEL,
     MUTED,
@@ -17,12 +18,10 @@ from discover.plots.style import (
     new_figure,
     plain_log_axis,
     scaled,
-    to_svg,
 )
+from discover.plots.svg import to_svg
 
 _ROW = 17.0
-_BEFORE = "#8a94a0"
-_MOST_LOOPS = 2
 
 
 def gap_by_record(records: Sequence[Mapping[str, Any]]) -> str | None:
@@ -45,7 +44,7 @@ def gap_by_record(records: Sequence[Mapping[str, Any]]) -> str | None:
         figure = new_figure(620, 100 + _ROW * max(len(records), 3))
         axes = figure.add_subplot()
         axes.set_xscale("log")
-        axes.set_xlim(min(values) / 1.3, max(values) * 1.3)
+        axes.set_xlim(min(values) / 1.15, max(values) * 1.15)
         for row, record in enumerate(records):
             ends = [record["gap_before_percent"], record["gap_after_percent"]]
             axes.plot(ends, [row, row], color="#c5cdd6", linewidth=1.6, zorder=1)
@@ -61,7 +60,7 @@ def gap_by_record(records: Sequence[Mapping[str, Any]]) -> str | None:
             label="noise floor",
         )
         for key, colour, label in (
-            ("gap_before_percent", _BEFORE, "before"),
+            ("gap_before_percent", BEFORE, "before"),
             ("gap_after_percent", MODEL, "after"),
         ):
             for held_out in sorted({bool(r["held_out"]) for r in records}):
@@ -125,37 +124,6 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
         return to_svg(figure, name="gap-rounds", title="The gap from round to round")
 
 
-def gap_loops(record: GapCurves, *, name: str) -> str:
-    """Draw force over time and over velocity: measured, baseline, mended model."""
-    with house_style():
-        figure = new_figure(620, 290)
-        over_time, over_speed = figure.subplots(1, 2, width_ratios=(1.15, 1.0), sharey=True)
-        curves = (record.force, record.before, record.after)
-        scale, unit = scaled(max(float(np.max(np.abs(c))) for c in curves), "N")
-        speed_scale, speed_unit = scaled(float(np.max(np.abs(record.velocity))), "m/s")
-        looks: tuple[tuple[str, dict[str, Any]], ...] = (
-            ("measured", {"color": INK, "linewidth": 1.2}),
-            ("before", {"color": _BEFORE, "linewidth": 1.6, "dashes": (2, 2)}),
-            ("after", {"color": MODEL, "linewidth": 1.5, "dashes": (5, 2)}),
-        )
-        for curve, (label, look) in zip(curves, looks, strict=True):
-            over_time.plot(record.time - record.time[0], scale * curve, label=label, **look)
-            over_speed.plot(speed_scale * record.velocity, scale * curve, **look)
-        over_time.set(xlabel="Time (s)", ylabel=f"Force ({unit})")
-        over_speed.set_xlabel(f"Velocity ({speed_unit})")
-        for axes in (over_time, over_speed):
-            axes.locator_params(nbins=5)
-        figure.legend(loc="outside upper left", ncols=3)
-        title = f"Force of {record.file}: measured, baseline and mended model"
-        return to_svg(figure, name=name, title=title)
-
-
-def telling_records(data: GapFigureData) -> list[GapCurves]:
-    """Return the records whose gap shrank most, above their noise."""
-    ranked = sorted(data.records, key=lambda r: r.gap_after_percent - r.gap_before_percent)
-    return ranked[:_MOST_LOOPS]
-
-
 def effect_shape(shape: EffectShape, *, name: str) -> str:
     """Draw the force that an effect adds over what it follows, with its band."""
     with house_style():
@@ -200,7 +168,7 @@ def contest(entry: Mapping[str, Any], *, name: str) -> str:
         figure = new_figure(620, 84 + 26 * len(parts))
         axes = figure.add_subplot()
         for row, (_, probability) in enumerate(parts):
-            axes.barh(row, 100.0 * probability, height=0.62, color=MODEL if row == 0 else _BEFORE)
+            axes.barh(row, 100.0 * probability, height=0.62, color=MODEL if row == 0 else BEFORE)
             text = "> 99" if probability > 0.995 else f"{100.0 * probability:.0f}"
             axes.text(100.0 * probability + 1.0, row, f"{text} %", va="center", fontsize=10.5)
         axes.set_xlim(0.0, 112.0)

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from discover.figure_data import GapFigureData
+from discover.figure_data import GapFigureData, ShownRecord
 from discover.plots.gap import (
     contest,
     effect_shape,
     gap_by_record,
     gap_by_round,
-    gap_loops,
     misfit_surface,
-    telling_records,
 )
+from discover.plots.loops import record_curves
 from discover.plots.picture import Picture, picture
+from discover.plots.representative import representative
 from models.checks import one_of
 
 
@@ -62,16 +62,16 @@ class GapPlots:
         return picture("surface", misfit_surface(self._data))
 
     def loops(self, *files: str) -> Picture:
-        """Return force over time and velocity: measured, baseline, mended model.
+        """Return force over time, displacement and velocity: measured, mended model, baseline.
 
         Parameters
         ----------
         *files : str
-            Names of records; those whose gap shrank most where none is given.
+            Names of records; a few that show the most where none is given.
         """
         known = {r.file: r for r in self._data.records}
-        chosen = telling_records(self._data)
+        chosen: Sequence[ShownRecord] = representative(self._data.records)
         if files:
             chosen = [known[one_of("record", f, sorted(known))] for f in files]
-        drawn = [gap_loops(r, name=f"loops-{i}") for i, r in enumerate(chosen, start=1)]
+        drawn = [record_curves(r, name=f"loops-{i}") for i, r in enumerate(chosen, start=1)]
         return picture("loops", *drawn)

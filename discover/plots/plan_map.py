@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 
 from discover.figure_data import PlanFigureData, PlannedTest
 from discover.plots.plan_axes import DOTTED, dean_line, plan_labels, plan_limits, speed_range
-from discover.plots.style import INK, MUTED, house_style, new_figure, to_svg
+from discover.plots.style import INK, MUTED, house_style, new_figure
+from discover.plots.svg import to_svg
 
 _CLASSES = (
     (0.5, "#5ec962", "noise below 0.5 %"),

@@ -12,8 +12,8 @@ from discover.plots.style import (
     STRUCTURE_COLOURS,
     house_style,
     new_figure,
-    to_svg,
 )
+from discover.plots.svg import to_svg
 
 _VISIBLE = 0.004  # of the bar's length: about two pixels
 

@@ -17,7 +17,8 @@ from discover.plots.plan_axes import (
     plan_limits,
     speed_range,
 )
-from discover.plots.style import INK, MUTED, house_style, new_figure, record_marker, to_svg
+from discover.plots.style import INK, MUTED, house_style, new_figure, record_marker
+from discover.plots.svg import to_svg
 
 
 def record_map(document: Mapping[str, Any], data: StudyFigureData) -> str | None:

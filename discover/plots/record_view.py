@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from discover.plots.style import ACCENT, INK, house_style, new_figure, scaled, to_svg
+from discover.plots.style import ACCENT, INK, house_style, new_figure, scaled
+from discover.plots.svg import to_svg
 from discover.records import Record
 from models.checks import Array
 

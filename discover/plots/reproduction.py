@@ -15,8 +15,8 @@ from discover.plots.style import (
     new_figure,
     plain_log_axis,
     scaled,
-    to_svg,
 )
+from discover.plots.svg import to_svg
 from discover.reproduction.figures import Panel, PaperFigure
 from discover.reproduction.orders import OrderCurve, OrderPoint
 from discover.reproduction.tables import ComparisonRow

@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch, Rectangle
 
 from discover.data_check import TELLING
-from discover.plots.style import INK, MUTED, STRUCTURE_COLOURS, house_style, new_figure, to_svg
+from discover.plots.style import INK, MUTED, STRUCTURE_COLOURS, house_style, new_figure
+from discover.plots.svg import to_svg
 
 _OPEN = ("#f3b34c", INK, f"below {TELLING:.0f} nats: can't be told apart")
 _TOLD = (

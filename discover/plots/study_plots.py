@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from discover.figure_data import StudyFigureData
+from discover.figure_data import ShownRecord, StudyFigureData
 from discover.plots.errors import error_by_record
-from discover.plots.loops import loops, representative
+from discover.plots.loops import record_curves
 from discover.plots.picture import Picture, picture
 from discover.plots.probabilities import probability_bars
 from discover.plots.record_map import record_map
+from discover.plots.representative import representative
 from models.checks import one_of
 
 
@@ -55,8 +56,8 @@ class StudyPlots:
             Names of records; a few that show the most where none is given.
         """
         known = {r.file: r for r in self._data.records}
-        chosen: Sequence[Any] = representative(self._data.records)
+        chosen: Sequence[ShownRecord] = representative(self._data.records)
         if files:
             chosen = [known[one_of("record", f, sorted(known))] for f in files]
-        drawn = [loops(r, name=f"loops-{i}") for i, r in enumerate(chosen, start=1)]
+        drawn = [record_curves(r, name=f"loops-{i}") for i, r in enumerate(chosen, start=1)]
         return picture("loops", *drawn)

@@ -1,18 +1,16 @@
-"""How every picture looks: a colour-blind-safe palette, one type scale, SVG without pyplot."""
+"""How every picture looks: a colour-blind-safe palette, one type scale, no pyplot."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from io import StringIO
 from typing import Any
-from xml.sax.saxutils import escape, quoteattr
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 INK = "#1d2733"
 """Text and measured curves."""
@@ -24,6 +22,20 @@ MODEL = "#d55e00"
 """The model's curve."""
 ACCENT = "#0072b2"
 """Bars and the boundary."""
+
+BEFORE = "#8a94a0"
+"""A model before it was mended."""
+
+_LOOKS = (
+    {"color": MODEL, "linewidth": 1.5, "dashes": (4, 2)},
+    {"color": ACCENT, "linewidth": 1.5, "dashes": (1.5, 1.5)},
+    {"color": "#009e73", "linewidth": 1.5, "dashes": (6, 2, 1, 2)},
+    {"color": "#cc79a7", "linewidth": 1.5, "dashes": (3, 1)},
+)
+"""Of the models beside a measured curve; colours by Okabe and Ito, each with its own dashes."""
+
+MODEL_OVER_MANY: dict[str, Any] = {"color": MODEL, "linewidth": 1.0, "dashes": (4, 2)}
+"""Of the model where measured curves have many colours."""
 
 STRUCTURE_COLOURS = {
     "FOIM": "#0072b2",
@@ -61,8 +73,6 @@ def record_marker(structure: str, *, held_out: bool, size: float = 8.0) -> dict[
         "zorder": 4,
     }
 
-
-_FONTS = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
 _STYLE: Any = {  # keys that only newer matplotlib types spell out
     "svg.fonttype": "none",
@@ -107,43 +117,17 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width / 96.0, height / 96.0), dpi=96, layout="constrained")
 
 
-def to_svg(figure: Figure, *, name: str, title: str) -> str:
-    """Return `figure` as one ``<svg>`` element that can stand in a page beside others.
+def prediction_look(label: str, number: int) -> dict[str, Any]:
+    """Return how the `number`-th model (from 0) is drawn beside a measured curve."""
+    if label == "before":
+        return {"color": BEFORE, "linewidth": 1.6, "dashes": (2, 2)}
+    return dict(_LOOKS[number % len(_LOOKS)])
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        Drawn inside `house_style`.
-    name : str
-        Prefix of every id, unique on the page; letters, digits and hyphens.
-    title : str
-        What a screen reader says of the picture.
 
-    Examples
-    --------
-    >>> with house_style():
-    ...     text = to_svg(new_figure(100, 80), name="empty", title="Nothing & more")
-    >>> text.startswith("<svg"), "<title>Nothing &amp; more</title>" in text
-    (True, True)
-    """
-    stream = StringIO()
-    with matplotlib.rc_context({"svg.hashsalt": name}):
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    text = stream.getvalue()
-    text = text[text.index("<svg") :].strip()
-    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
-    text = re.sub(r'\bid="', f'id="{name}-', text)
-    text = re.sub(r'(href="|url\()#', rf"\g<1>#{name}-", text)
-    # Inside a page a style element would reach past the picture; the root's attribute does not.
-    text = re.sub(r"<style.*?</style>", "", text, flags=re.DOTALL)
-    text = text.replace("'DejaVu Sans'", _FONTS)
-    opening = text[: text.index(">") + 1]
-    plain = re.sub(r'\b(width|height)="[\d.]+pt"', "", opening)
-    width = figure.get_figwidth() * 96.0
-    style = f"max-width:{width:.0f}px;width:100%;height:auto;stroke-linejoin:round"
-    label = quoteattr(title)
-    plain = plain.replace("<svg", f'<svg role="img" aria-label={label} style="{style}"', 1)
-    return plain + f"<title>{escape(title)}</title>" + text[len(opening) :]
+def graded_colours(count: int) -> list[tuple[float, float, float, float]]:
+    """Return so many colours from dark to light: quantities in rising order, without pale ends."""
+    ramp = matplotlib.colormaps["viridis"]
+    return [tuple(ramp(v)) for v in np.linspace(0.0, 0.85, max(count, 1))]
 
 
 def plain_log_axis(axes: Axes, *, which: str) -> None:
@@ -151,7 +135,11 @@ def plain_log_axis(axes: Axes, *, which: str) -> None:
     axis = axes.xaxis if which == "x" else axes.yaxis
     low, high = axes.get_xlim() if which == "x" else axes.get_ylim()
     steps = (1.0, 2.0, 5.0) if high / low < 300.0 else (1.0,)
-    axis.set_major_locator(LogLocator(base=10.0, subs=steps, numticks=20))
+    if high / low < 10.0:  # 1, 2 and 5 leave such an axis with a mark or two
+        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+        axis.set_minor_locator(NullLocator())
+    else:
+        axis.set_major_locator(LogLocator(base=10.0, subs=steps, numticks=20))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 

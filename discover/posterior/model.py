@@ -15,6 +15,7 @@ from models.constitutive import FittedTerm, ForceModel
 from models.terms import Scales
 from models.terms.between_tests import ONLY
 
+_STEEPEST = 1e100  # of a slope in rows: steeper ones have no square, and tell nothing
 _LATEST = 8  # rows of changed models that are kept a record: a slope changes few records
 
 
@@ -118,9 +119,9 @@ class Composite:
 
     @property
     def changes_force(self) -> bool:
-        """True where a term changes the force, as a sensor does, and none the motion."""
-        acts = {p.fitted.term.acts for p in self.terms}
-        return "output" in acts and "input" not in acts
+        """True where terms change the force, as a sensor does, and none is simulated in time."""
+        changing = [p.fitted.term for p in self.terms if p.fitted.term.acts != "force"]
+        return bool(changing) and all(t.acts == "output" and t.impacts is None for t in changing)
 
     @property
     def adds_up(self) -> bool:
@@ -235,5 +236,5 @@ class Evaluator:
                 found.append(placed.fitted.coefficient * share * change / step)
                 continue
             change = (self.force(other) - at) / step
-            found.append(np.where(np.isfinite(change), change, 0.0))
+            found.append(np.where(np.abs(change) < _STEEPEST, change, 0.0))
         return np.stack(found, axis=1) if found else np.zeros((at.shape[0], 0, at.shape[1]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import re
 from functools import cache
 from typing import Any
@@ -79,7 +81,7 @@ def environment() -> jinja2.Environment:
 
 
 def render(template: str, *, command: str, document_name: str, **values: Any) -> str:
-    """Return the page of `template`, the style sheet inlined.
+    """Return the page of `template`, style sheet and script inlined.
 
     Parameters
     ----------
@@ -97,6 +99,14 @@ def render(template: str, *, command: str, document_name: str, **values: Any) ->
     if loader is None:
         raise jinja2.TemplateNotFound(template)
     sheet = Markup(loader.get_source(engine, "style.css")[0])
+    script = loader.get_source(engine, "figures.js")[0]
+    # The page lets this script run and no other.
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return engine.get_template(template).render(
-        command=command, document_name=document_name, stylesheet=sheet, **values
+        command=command,
+        document_name=document_name,
+        stylesheet=sheet,
+        script=Markup(script),
+        script_hash=Markup(f"sha256-{digest}"),
+        **values,
     )

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
-
-from markupsafe import Markup
 
 from discover.figure_data import GapFigureData
 from discover.gap.verdict import round_text, verdict_lines
@@ -14,12 +12,12 @@ from discover.plots.gap import (
     effect_shape,
     gap_by_record,
     gap_by_round,
-    gap_loops,
     misfit_surface,
-    telling_records,
 )
 from discover.report.environment import render
+from discover.report.files import coefficients_csv, page_files, table_csv
 from discover.report.motion import motion_lines
+from discover.report.records import only_drawn, picture, record_figures, record_section
 from discover.shape_words import shape
 from discover.words import error_lines, named_line
 
@@ -36,6 +34,38 @@ def gap_lines(document: Mapping[str, Any]) -> list[str]:
     return [*error_lines(document), *verdict_lines(document), *motion]
 
 
+def gap_files(
+    document: Mapping[str, Any],
+    data: GapFigureData,
+    *,
+    command: str,
+    formats: Sequence[str] = (),
+) -> dict[str, str | bytes]:
+    """Return page, pictures and tables of a gap search by file name.
+
+    Parameters
+    ----------
+    document : mapping
+        The search as in ``gap.json``.
+    data : GapFigureData
+        What pictures need besides.
+    command : str
+        What a person types to repeat it.
+    formats : sequence of str
+        Of the pictures, beside SVG.
+    """
+    figures = gap_figures(document, data)
+    baseline = document["baseline"]
+    parts = [(f"baseline {i}", band["terms"])
+             for i, band in enumerate(baseline.get("bands") or (), start=1)]  # fmt: skip
+    terms = [*(parts or [("baseline", baseline["terms"])]), ("mended", document["mended"])]
+    return {
+        **page_files(gap_report(document, data, figures, command=command), figures, formats),
+        "coefficients.csv": coefficients_csv(terms),
+        "records.csv": table_csv(document["records"], ("file", "held_out")),
+    }
+
+
 def gap_figures(document: Mapping[str, Any], data: GapFigureData) -> dict[str, str]:
     """Return the search's pictures by name, each one ``<svg>`` element.
 
@@ -46,7 +76,7 @@ def gap_figures(document: Mapping[str, Any], data: GapFigureData) -> dict[str, s
     data : GapFigureData
         What the pictures need besides.
     """
-    drawn = {
+    drawn: dict[str, str | None] = {
         "gap-rounds": gap_by_round(document),
         "gap-records": gap_by_record(document["records"]),
         "gap-surface": misfit_surface(data),
@@ -55,9 +85,7 @@ def gap_figures(document: Mapping[str, Any], data: GapFigureData) -> dict[str, s
         drawn[f"contest-{number}"] = contest(entry, name=f"contest-{number}")
     for curve in data.shapes:
         drawn[f"shape-{curve.round + 1}"] = effect_shape(curve, name=f"shape-{curve.round + 1}")
-    for number, record in enumerate(telling_records(data), start=1):
-        drawn[f"loops-{number}"] = gap_loops(record, name=f"loops-{number}")
-    return {name: svg for name, svg in drawn.items() if svg is not None}
+    return {**only_drawn(drawn), **record_figures(data.records)}
 
 
 def gap_report(
@@ -80,23 +108,15 @@ def gap_report(
     command : str
         What a person types to repeat it.
     """
-
-    def picture(name: str) -> Markup:
-        return Markup(figures.get(name, ""))
-
     rounds = [
         {
             "entry": entry,
-            "contest": picture(f"contest-{number}"),
-            "shape": picture(f"shape-{number}"),
+            "contest": picture(figures, f"contest-{number}"),
+            "shape": picture(figures, f"shape-{number}"),
             "text": round_text(entry),
             "shape_text": shape({"id": entry["effect"], **entry.get("parameters", {})}),
         }
         for number, entry in enumerate(document["rounds"], start=1)
-    ]
-    loops = [
-        {"svg": picture(f"loops-{number}"), "record": record}
-        for number, record in enumerate(telling_records(data), start=1)
     ]
     return render(
         "gap.html",
@@ -105,8 +125,8 @@ def gap_report(
         document=document,
         verdict=[named_line(line) for line in gap_lines(document)],
         rounds=rounds,
-        loops=loops,
-        by_round=picture("gap-rounds"),
-        by_record=picture("gap-records"),
-        surface=picture("gap-surface"),
+        shown=record_section(data.records, figures),
+        by_round=picture(figures, "gap-rounds"),
+        by_record=picture(figures, "gap-records"),
+        surface=picture(figures, "gap-surface"),
     )

@@ -1,11 +1,56 @@
-"""Predicted forces in lines for the terminal: models, best first."""
+"""Predicted forces: lines for the terminal, models best first, and the page."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from discover.words import counted, percent
+from discover.figure_data import SimulatedRecord
+from discover.plots.model_errors import model_errors
+from discover.report.environment import render
+from discover.report.files import page_files
+from discover.report.records import only_drawn, picture, record_figures, record_section
+from discover.words import counted, model_names, named_line, percent
+
+
+def simulation_files(
+    document: Mapping[str, Any],
+    records: Sequence[SimulatedRecord],
+    *,
+    command: str,
+    formats: Sequence[str] = (),
+) -> dict[str, str | bytes]:
+    """Return page and pictures of a simulation by file name.
+
+    Parameters
+    ----------
+    document : mapping
+        As in ``simulation.json``.
+    records : sequence of SimulatedRecord
+        In the campaign's order.
+    command : str
+        What a person types to repeat it.
+    formats : sequence of str
+        Of the pictures, beside SVG.
+    """
+    ranked = sorted(document["models"], key=lambda m: int(m["rank"]))
+    names = model_names([m["name"] for m in ranked])
+    named = [{**m, "name": name} for m, name in zip(ranked, names, strict=True)]
+    errors = {"errors": model_errors(named, name="errors")}
+    figures = {**only_drawn(errors), **record_figures(records)}
+    page = render(
+        "simulation.html",
+        command=command,
+        document_name="simulation.json",
+        document=document,
+        verdict=[named_line(line) for line in simulation_lines(document)],
+        ranked=ranked,
+        records=records,
+        held_out=any(r.held_out for r in records),
+        errors=picture(figures, "errors"),
+        shown=record_section(records, figures),
+    )
+    return page_files(page, figures, formats)
 
 
 def simulation_lines(document: Mapping[str, Any]) -> list[str]:

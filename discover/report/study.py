@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from markupsafe import Markup
 
-from discover.figure_data import RecordCurves, StudyFigureData
+from discover.figure_data import StudyFigureData
 from discover.plots.errors import error_by_record
-from discover.plots.loops import loops, representative
 from discover.plots.probabilities import probability_bars
 from discover.plots.record_map import record_map
 from discover.report.environment import render
+from discover.report.files import coefficients_csv, page_files, table_csv
+from discover.report.records import only_drawn, picture, record_figures, record_section
 from discover.study.verdict import (
     boundary_text,
     extras,
@@ -21,7 +22,47 @@ from discover.study.verdict import (
     structure_name,
     verdict_lines,
 )
-from discover.words import named_line, percent, remainder_text, significant
+from discover.words import named_line, remainder_text, significant
+
+_RECORD_COLUMNS = (
+    "file", "kind", "held_out", "frequency", "amplitude", "band", "structure", "dean_paper",
+    "dean_standard", "error_percent", "relative_error_percent", "noise_percent",
+)  # fmt: skip
+
+
+def study_files(
+    document: Mapping[str, Any],
+    data: StudyFigureData,
+    *,
+    command: str,
+    formats: Sequence[str] = (),
+) -> dict[str, str | bytes]:
+    """Return page, pictures and tables of a study by file name.
+
+    Parameters
+    ----------
+    document : mapping
+        The study as in ``study.json``.
+    data : StudyFigureData
+        What pictures and tables need besides.
+    command : str
+        What a person types to repeat the study.
+    formats : sequence of str
+        Of the pictures, beside SVG.
+    """
+    figures = study_figures(document, data)
+    page = study_report(document, data, figures, command=command)
+    bands = [(str(i), band["terms"]) for i, band in enumerate(document["bands"], start=1)]
+    records = [
+        {name: getattr(r, name) for name in _RECORD_COLUMNS}
+        | {"band": None if r.band is None else r.band + 1}
+        for r in data.records
+    ]
+    return {
+        **page_files(page, figures, formats),
+        "coefficients.csv": coefficients_csv(bands),
+        "records.csv": table_csv(records, _RECORD_COLUMNS),
+    }
 
 
 def study_figures(document: Mapping[str, Any], data: StudyFigureData) -> dict[str, str]:
@@ -34,15 +75,13 @@ def study_figures(document: Mapping[str, Any], data: StudyFigureData) -> dict[st
     data : StudyFigureData
         What the pictures need besides.
     """
-    drawn = {
+    drawn: dict[str, str | None] = {
         "map": record_map(document, data),
         "probabilities": probability_bars(document, data),
     }
     for number, svg in enumerate(error_by_record(data), start=1):
         drawn[f"errors-{number}"] = svg
-    for number, record in enumerate(representative(data.records), start=1):
-        drawn[f"loops-{number}"] = loops(record, name=f"loops-{number}")
-    return {name: svg for name, svg in drawn.items() if svg is not None}
+    return {**only_drawn(drawn), **record_figures(data.records)}
 
 
 def study_report(
@@ -65,11 +104,6 @@ def study_report(
     command : str
         What a person types to repeat the study.
     """
-    shown = representative(data.records)
-    pictures = [
-        {"svg": Markup(figures[f"loops-{i}"]), "heading": _heading(r), "caption": _caption(r)}
-        for i, r in enumerate(shown, start=1)
-    ]
     boundaries = [boundary_text(b, document) for b in document.get("boundaries", ())]
     verdict = [named_line(line) for line in verdict_lines(document)]
     check = {"boundary_dean": None, "amplitude_exponent": None, "reason": ""}
@@ -88,13 +122,13 @@ def study_report(
         document_name="study.json",
         document=document,
         verdict=verdict,
-        figures={name: Markup(figures.get(name, "")) for name in ("map", "probabilities")},
+        figures={name: picture(figures, name) for name in ("map", "probabilities")},
         errors=[Markup(svg) for name, svg in figures.items() if name.startswith("errors-")],
         map_caption=_map_caption(document, data),
         boundaries=boundaries,
         bands=bands,
         extras=extras(document),
-        loops=pictures,
+        shown=record_section(data.records, figures),
         records=data.records,
         held_out=sum(r.held_out for r in data.records),
         dean=any(r.dean_paper is not None for r in data.records),
@@ -103,28 +137,6 @@ def study_report(
         has_fluid=document["dean_check"]["verdict"] != "no-geometry",
         next_test=_next(document),
     )
-
-
-def _heading(record: RecordCurves) -> str:
-    if record.frequency and record.amplitude:
-        return f"{significant(record.frequency, 3)} Hz, {significant(1e3 * record.amplitude, 3)} mm"
-    return record.file
-
-
-def _caption(record: RecordCurves) -> str:
-    parts = [record.structure] if record.structure else []
-    if record.held_out:
-        parts.append("held out")
-    if record.relative_error_percent is not None:
-        parts.append(f"error {percent(record.relative_error_percent)} of ‖force‖")
-    if record.noise_percent is not None:
-        parts.append(f"noise {percent(record.noise_percent)}")
-    if record.dean_paper is not None:
-        parts.append(
-            f"De {significant(record.dean_paper, 3)} (paper), "
-            f"{significant(record.dean_standard, 3)} (standard convention)"
-        )
-    return " · ".join(parts)
 
 
 def _map_caption(document: Mapping[str, Any], data: StudyFigureData) -> str:

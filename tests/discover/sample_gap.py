@@ -3,6 +3,7 @@
 import numpy as np
 
 from discover.figure_data import EffectShape, GapCurves, GapFigureData, MisfitCell
+from tests.discover.sample_study import sample_response
 
 
 def curves(frequency, amplitude, *, held_out=False):
@@ -14,6 +15,7 @@ def curves(frequency, amplitude, *, held_out=False):
     noise = 20.0 * np.random.default_rng(1).standard_normal(time.size)
     return GapCurves(
         file=f"{frequency:g}hz-{1e3 * amplitude:g}mm.csv",
+        kind="sine",
         held_out=held_out,
         frequency=frequency,
         amplitude=amplitude,
@@ -21,6 +23,10 @@ def curves(frequency, amplitude, *, held_out=False):
         displacement=x,
         velocity=v,
         force=after + noise,
+        responses=(
+            sample_response(frequency, noise),
+            sample_response(frequency, after + noise - before),
+        ),
         before=before,
         after=after,
         noise_percent=1.0 + 0.1 * frequency,

@@ -10,10 +10,34 @@ from discover.figure_data import (
     StructureProbability,
     StudyFigureData,
 )
+from discover.residual_data import Response
 
 SPEED_TO_DEAN = 798.8
 FREQUENCIES = (0.1, 0.2, 0.3, 0.5, 0.8, 1.2, 2.0, 3.0, 5.0, 8.0, 12.0, 15.0)
 AMPLITUDES = (0.005, 0.010, 0.020)
+
+
+def sample_response(frequency, left):
+    spectrum = np.geomspace(frequency / 4.0, 100.0 * frequency, 40)
+    phase = (np.arange(48) + 0.5) / 48
+    stiffness = np.array([-370.0 * (2.0 * math.pi * frequency) ** 2 + 1e5j * frequency])
+    return Response(
+        frequency=spectrum,
+        force=1000.0 / spectrum,
+        left=np.full(40, float(np.std(left))),
+        noise=np.full(40, 2.0),
+        stiffness_frequency=np.array([frequency]),
+        stiffness=stiffness,
+        model_stiffness=0.99 * stiffness,
+        coherence=np.zeros(0),
+        phase=phase,
+        over_phase=np.interp(phase, np.linspace(0.0, 1.0, left.size), left),
+        lag=0.002 * np.arange(1, 41),
+        correlation=0.1 * np.cos(np.arange(40)),
+        correlation_limit=0.05,
+        gain_percent=0.3,
+        error_over_noise=1.1,
+    )
 
 
 def curves(frequency, amplitude, *, seed=0):
@@ -38,6 +62,7 @@ def curves(frequency, amplitude, *, seed=0):
         amplitude=amplitude,
         dean_paper=dean,
         dean_standard=dean / (2.0 * math.sqrt(2.0)),
+        responses=(sample_response(frequency, noise),),
         time=time,
         displacement=x,
         velocity=v,

@@ -8,6 +8,7 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 
 from discover.cli import main
@@ -48,7 +49,15 @@ def test_discover_prints_the_answer_and_what_is_next_and_writes_the_folder(campa
     assert headline in (folder / "report.html").read_text().replace("\u202f", " ")
     assert lines[-1] == "Report: " + str(Path("inerter-out", "discover-laminar", "report.html"))
     written = {p.name for p in folder.iterdir()} - {".inerter-files"}
-    assert written == {"study.json", "model.json", "report.html", "figures"}
+    assert written == {
+        "study.json", "model.json", "report.html", "figures", "coefficients.csv", "records.csv"
+    }
+    terms = pandas.read_csv(folder / "coefficients.csv")
+    assert terms.lower.le(terms.coefficient).all()
+    assert terms.upper.ge(terms.coefficient).all()
+    records = pandas.read_csv(folder / "records.csv")
+    assert list(records.frequency) == pytest.approx([0.5, 1.0, 2.0, 4.0], rel=1e-3)
+    assert records.held_out.sum() == 1
     assert all(p.suffix == ".svg" for p in (folder / "figures").iterdir())
 
 

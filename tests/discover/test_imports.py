@@ -27,7 +27,7 @@ def test_help_loads_no_numerics():
 
 
 @pytest.mark.slow
-def test_check_loads_neither_a_compiler_nor_a_learning_library(tmp_path):
+def test_check_loads_no_learning_library(tmp_path):
     modules = loaded(
         "import contextlib, io\n"
         "from discover.cli import main\n"
@@ -35,4 +35,5 @@ def test_check_loads_neither_a_compiler_nor_a_learning_library(tmp_path):
         f"    main(['check', '-o', {str(tmp_path / 'out')!r}])"
     )
     assert "discover.data_check.check" in modules
-    assert not modules & set(SLOW)
+    # The noise of sine tests is compiled, which is worth its wait; nothing else is.
+    assert not modules & set(SLOW) - {"numba"}

@@ -213,8 +213,8 @@ def content_or_none(folder: Path) -> str | None:
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no signals for another process")
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("after", [0.3, 1.0, 2.5])
-def test_an_interrupt_at_any_moment_ends_with_130(
+@pytest.mark.parametrize("after", [0.3, 0.8, 1.5, 2.5])
+def test_an_interrupt_ends_with_130_or_comes_after_all_is_written(
     tmp_path: Path, number: signal.Signals, after: float
 ) -> None:
     process = subprocess.Popen(
@@ -229,6 +229,10 @@ def test_an_interrupt_at_any_moment_ends_with_130(
     time.sleep(after)
     process.send_signal(number)
     out, err = process.communicate(timeout=60)
+    if process.returncode == 0 and after > 1.0:  # on a fast machine all was done before
+        assert [p.name for p in tmp_path.iterdir()] == ["out"]
+        assert (tmp_path / "out" / "report.html").is_file()
+        return
     assert (out, err, process.returncode) == ("", "inerter: interrupted\n", 130)
     assert list(tmp_path.iterdir()) == []
 

@@ -5,9 +5,10 @@ import xml.etree.ElementTree as ElementTree
 import matplotlib
 
 from discover.plots.errors import error_by_record
-from discover.plots.loops import loops, representative
+from discover.plots.loops import record_curves
 from discover.plots.probabilities import probability_bars
 from discover.plots.record_map import record_map, relative_interval
+from discover.plots.representative import representative
 from discover.plots.style import STRUCTURE_COLOURS, house_style
 from tests.discover.sample_study import AMPLITUDES, FREQUENCIES, sample_data, sample_document
 
@@ -76,7 +77,7 @@ def test_a_boundary_in_frequency_stands_upright():
 
 def test_loops_show_both_curves_in_prefixed_units():
     fast = max(sample_data().records, key=lambda r: abs(r.force).max())
-    labels = words(loops(fast, name="fast"))
+    labels = words(record_curves(fast, name="fast"))
     assert {"Time (s)", "Force (kN)", "Velocity (m/s)", "measured", "model"} <= set(labels)
 
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from discover.motion_fit import observe_all
+from discover.record_curves import shown_samples
 from discover.records import Record
-from discover.shown_samples import shown_samples
 
 
 def observed(displacement, force, time):
@@ -21,15 +21,30 @@ def test_a_sine_test_shows_two_cycles():
     assert shown.size <= 600
 
 
-def test_a_random_record_shows_the_stretch_about_its_greatest_force_at_its_own_sampling():
+def test_a_random_record_shows_stretches_at_its_own_sampling_its_greatest_force_among_them():
     time = np.arange(20_000) / 500.0
     rng = np.random.default_rng(1)
     tones = rng.uniform(0.5, 5.0, 60), rng.uniform(0.0, 2.0 * np.pi, 60)
     x = sum(np.sin(2.0 * np.pi * f * time + p) for f, p in zip(*tones, strict=True)) * 1e-3
     force = 1e5 * x + rng.standard_normal(time.size)
     observation = observed(x, force, time)
-    shown = observation.time[shown_samples(observation)]
-    peak = observation.time[np.argmax(np.abs(observation.measured))]
-    assert shown[0] <= peak <= shown[-1]
-    assert np.ptp(shown) < 0.5 * np.ptp(observation.time)
+    shown = shown_samples(observation)
+    steps = np.diff(observation.time[shown])
+    assert 1 <= np.sum(steps > 1.0) <= 2
+    peak = np.argmax(np.abs(observation.measured))
+    assert np.min(np.abs(shown - peak)) <= 10
+    assert np.sum(steps[steps < 1.0]) < 0.5 * np.ptp(observation.time)
     assert shown.size <= 600
+
+
+def test_a_sweep_shows_as_many_turns_where_it_is_slow_as_where_it_is_fast():
+    time = np.arange(20_000) / 500.0
+    turns = 0.3 * 40.0 / np.log(20.0) * (np.exp(time / 40.0 * np.log(20.0)) - 1.0)
+    loudest = 1.0 + 0.5 * np.exp(-(((time - 20.0) / 3.0) ** 2))
+    x = 0.01 * loudest * np.sin(2.0 * np.pi * turns)
+    observation = observed(x, 1e5 * x + np.random.default_rng(2).standard_normal(time.size), time)
+    shown = shown_samples(observation)
+    cuts = np.flatnonzero(np.diff(observation.time[shown]) > 1.0) + 1
+    seen = [np.ptp(turns[part]) for part in np.split(shown, cuts)]
+    assert len(seen) == 3
+    assert max(seen) < 2.5 * min(seen)

@@ -26,7 +26,7 @@ MOTION = np.array(
 
 
 def block() -> str:
-    _, section = PAGE.read_text(encoding="utf-8").split("### campaign.toml in full")
+    _, section = PAGE.read_text(encoding="utf-8").split("## campaign.toml in full")
     found = re.search(r"```toml\n(.*?)```", section, re.DOTALL)
     assert found is not None
     return found[1]

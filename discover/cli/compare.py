@@ -1,0 +1,163 @@
+"""``inerter compare``: studies, models or campaigns side by side."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from discover.cli import options
+from discover.cli.invocation import Invocation
+from discover.cli.results import deliver, model_label, result_folder, working
+from models.checks import InputError
+
+if TYPE_CHECKING:
+    from discover.compare import Side
+    from discover.records import Campaign
+
+
+def compare(
+    context: typer.Context,
+    answers: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="A B…",
+            help="Folders of results of discover or gap, study.json, model.json, campaigns (they"
+            " are studied first), or models by name.",
+        ),
+    ],
+    on: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--on",
+            metavar="CAMPAIGN",
+            help="Predict these records with every answer too; may be given again"
+            " [default: the campaigns among the answers].",
+            show_default=False,
+        ),
+    ] = None,
+    effect_files: options.EffectFiles = None,
+    figures: options.Figures = None,
+    out: options.Out = None,
+    as_json: options.AsJson = False,
+    seed: options.Seed = options.DEFAULT_SEED,
+    jobs: options.Jobs = 1,
+) -> int:
+    """Put answers side by side: structures, coefficients and whether they differ, errors."""
+    if len(answers) < 2:
+        raise InputError("answers", expected="two or more", found=answers[0], where="compare")
+    twice = next((a for a in answers if answers.count(a) > 1), None)
+    if twice is not None:
+        raise InputError("answers", expected="each once", found=f"{twice} twice", where="compare")
+    formats = options.figure_formats(figures)
+    names = _short(answers)
+    folder = result_folder("compare", names[0], out, model="-".join(names[1:]))
+
+    # Loaded here: --help and complaints about options need no numerics.
+    from discover.cli.own_effects import own_effects
+    from discover.compare import comparison_document
+    from discover.readers import read_campaign
+    from discover.report.comparison import comparison_files, comparison_lines
+    from discover.simulate import simulate_forces
+    from models.terms import own_terms
+
+    with working("Reading effects"):
+        own = own_effects(effect_files)
+    context.with_resource(own_terms(*own))
+    common: dict[str, Campaign] = {}
+    for path in on or ():
+        with working(f"Reading {path}"):
+            common[str(path)] = read_campaign(path)
+    device = next((c.device for c in common.values() if c.device is not None), None)
+    found: dict[str, Side] = {}
+    # Models by name come last: they take the device of the others.
+    for name, answer in sorted(
+        zip(names, answers, strict=True), key=lambda given: not Path(given[1]).exists()
+    ):
+        with working(f"Reading {answer}"):
+            side, campaign = _side(name, answer, device, seed=seed, jobs=jobs)
+        found[name] = side
+        device = side.model.device if device is None else device
+        if campaign is not None and on is None:
+            common[answer] = campaign
+    sides = [found[name] for name in names]
+    simulations = []
+    for shown, records in common.items():
+        with working(f"Predicting {shown}"):
+            models = {s.name: s.model for s in sides}
+            simulations.append(simulate_forces(records, models, seed=seed, jobs=jobs).to_dict())
+    document = comparison_document(sides, simulations, seed=seed)
+    with working("Drawing"):
+        invocation: Invocation = context.obj
+        files = comparison_files(document, command=invocation.repeat(seed=seed), formats=formats)
+    deliver(
+        document,
+        name="comparison.json",
+        folder=folder,
+        files=files,
+        summary=comparison_lines(document),
+        as_json=as_json,
+    )
+    return 0
+
+
+def _side(
+    name: str, answer: str, device: Any, *, seed: int, jobs: int
+) -> tuple[Side, Campaign | None]:
+    """Return an answer from what was typed, and the campaign where it was studied for this."""
+    from discover.cli.named_model import named_model
+    from discover.compare import side_of_gap, side_of_model, side_of_study
+    from discover.readers import read_campaign
+    from discover.study import StudyOptions, load_study, run_study
+
+    path = Path(answer)
+    if path.is_dir():
+        if (path / "study.json").is_file():
+            return side_of_study(name, load_study(path)), None
+        if (path / "gap.json").is_file():
+            model = named_model(str(path / "model.json"), None, where=answer)
+            return side_of_gap(name, _document(path / "gap.json"), model), None
+    if path.suffix == ".json" and path.is_file():
+        schema = _document(path).get("schema")
+        if schema == "inerter.study/1":
+            return side_of_study(name, load_study(path)), None
+        return side_of_model(name, named_model(answer, device, where=answer)), None
+    if path.exists():
+        campaign = read_campaign(path)
+        study = run_study(campaign, StudyOptions(seed=seed, jobs=jobs))
+        return side_of_study(name, study), campaign
+    return side_of_model(name, named_model(answer, device, where=answer)), None
+
+
+def _document(path: Path) -> dict[str, Any]:
+    """Return a JSON document.
+
+    Raises
+    ------
+    InputError
+        Where the file holds none.
+    """
+    try:
+        table = json.loads(path.read_text(encoding="utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise InputError("not valid JSON", found=str(error), where=str(path)) from None
+    if not isinstance(table, dict):
+        found = type(table).__name__
+        raise InputError("document", expected="a JSON object", found=found, where=str(path))
+    return table
+
+
+def _short(answers: list[str]) -> list[str]:
+    """Return a short name for each answer; as typed where two would be alike."""
+    short = [_label(a) for a in answers]
+    return [s if short.count(s) == 1 else a for s, a in zip(short, answers, strict=True)]
+
+
+def _label(answer: str) -> str:
+    path = Path(answer)
+    if path.suffix == ".json":
+        named = path.stem not in ("model", "study")
+        return path.stem if named else path.resolve().parent.name
+    return path.resolve().name if path.exists() else model_label(answer)

@@ -1,0 +1,144 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from discover.cli import main
+from discover.compare import comparison_document, differences, homogeneous, side_of_model
+from discover.compare.side import Side, SideBand
+from discover.report.comparison import comparison_files, comparison_lines
+from models.constitutive import Band, FittedTerm, ForceModel, SegmentedModel
+
+NORMAL = 1.959963984540054
+
+
+def around(value, sd):
+    return (value - NORMAL * sd, value + NORMAL * sd)
+
+
+def side(name, *bands, content_hash="", coordinate="speed"):
+    model = SegmentedModel((Band(None, None, ForceModel((FittedTerm("inertia", 1.0),))),), "speed")
+    shown = tuple(SideBand(None, None, structure, 0.9, terms) for structure, terms in bands)
+    return Side(name, "study", name, content_hash, "", coordinate, shown, model)
+
+
+def inertia(value, sd):
+    return {"id": "inertia", "coefficient": value, "unit": "kg", "interval": around(value, sd)}
+
+
+def test_values_of_one_truth_differ_as_often_as_the_level_says():
+    rng = np.random.default_rng(4)
+    sds = np.array([1.0, 2.0, 0.5])
+    found = [
+        homogeneous(values, [around(v, s) for v, s in zip(values, sds, strict=True)])
+        for values in 10.0 + sds * rng.standard_normal((4000, 3))
+    ]
+    assert np.mean(np.array(found) < 0.05) == pytest.approx(0.05, abs=0.011)
+
+
+def test_an_exact_value_is_held_against_the_other_s_interval():
+    assert homogeneous([10.0, 12.0], [None, around(12.0, 1.0)]) == pytest.approx(0.0455, abs=1e-4)
+    assert homogeneous([10.0, 12.0], [None, None]) is None
+
+
+def test_bands_match_by_place_and_by_structure_where_their_numbers_differ():
+    heavy, light = inertia(60.0, 0.1), inertia(50.0, 0.1)
+    fractional = {"id": "fractional-derivative", "coefficient": 5.0, "order": 0.5,
+                  "unit": "N s^0.5/m", "interval": (4.0, 6.0), "order_interval": (0.4, 0.6)}
+    two = side("two", ("FOIM", (fractional,)), ("IOIM-linear", (heavy,)))
+    one = side("one", ("IOIM-linear", (light,)))
+    (found,) = [d for d in differences([two, one]) if d.term == "inertia"]
+    assert (found.band, found.differs) == ("where IOIM-linear holds", True)
+    lone = [d for d in differences([two, one]) if d.term == "fractional-derivative"]
+    assert {d.quantity for d in lone} == {"coefficient", "order"}
+    assert {d.why for d in lone} == {"only in two"}
+    alike = side("also", ("IOIM-linear", (inertia(60.1, 0.1),)))
+    (found,) = differences([side("a", ("IOIM-linear", (heavy,))), alike])
+    assert (found.band, found.differs) == ("everywhere", False)
+
+
+def test_coefficients_of_different_units_are_not_compared():
+    def fractional(order):
+        ends = (order - 0.1, order + 0.1)
+        return {"id": "fractional-derivative", "coefficient": 5.0, "unit": f"N s^{order}/m",
+                "interval": (4.0, 6.0), "order": order, "order_interval": ends}
+
+    found = differences([side("a", ("FOIM", (fractional(0.5),))),
+                         side("b", ("FOIM", (fractional(0.9),)))])
+    coefficient, order = found
+    assert coefficient.differs is None
+    assert "units" in coefficient.why
+    assert order.differs is True
+
+
+def test_answers_from_the_same_records_are_told_to_be_dependent():
+    sides = [side(n, ("IOIM-linear", (inertia(60.0, 1.0),)), content_hash="ab") for n in "ab"]
+    document = comparison_document(sides, [], seed=0)
+    assert document["same_structures"]
+    assert any("same records" in f["text"] for f in document["findings"])
+    assert any(line.startswith("Agree: inertance") for line in comparison_lines(document))
+
+
+def test_models_alone_have_no_intervals_and_still_a_page():
+    model = ForceModel((FittedTerm("inertia", 60.0), FittedTerm("viscous-damping", 10.0)))
+    sides = [side_of_model(n, SegmentedModel((Band(None, None, model),), "speed")) for n in "ab"]
+    document = comparison_document(sides, [], seed=0)
+    assert {q["why"] for q in document["quantities"]} == {"none has an interval"}
+    files = comparison_files(document, command="inerter compare a b")
+    assert "none has an interval" in files["report.html"]
+    assert files["coefficients.csv"].count("inertia") == 2
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("campaigns") / "laminar"
+    plan = ["--frequencies", "0.5,2", "--amplitudes", "10"]
+    arguments = ["--device", "device-12", "--model", "ioim-laminar", "--noise", "0.5%", *plan]
+    assert main(["synth", str(folder), *arguments]) == 0
+    return folder
+
+
+def test_the_model_that_made_records_is_best_on_them_and_pictures_come_in_each_format(
+    campaign, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    arguments = ["compare", "ioim-turbulent", "ioim-laminar", "--on", str(campaign)]
+    assert main([*arguments, "--figures", "png,pdf"]) == 0
+    (folder,) = Path("inerter-out").iterdir()
+    assert folder.name == "compare-ioim-turbulent-ioim-laminar"
+    document = json.loads((folder / "comparison.json").read_text())
+    assert document["schema"] == "inerter.comparison/1"
+    (entry,) = document["errors"]
+    ranks = {m["name"]: m["rank"] for m in entry["models"]}
+    assert ranks == {"ioim-laminar": 1, "ioim-turbulent": 2}
+    assert (folder / "figures" / "errors-1.png").read_bytes()[1:4] == b"PNG"
+    assert (folder / "figures" / "errors-1.pdf").read_bytes()[:4] == b"%PDF"
+    assert "Errors on" in capsys.readouterr().out
+
+
+def test_simulate_has_a_page_beside_its_tables(campaign, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["simulate", "ioim-laminar", "ioim-turbulent", str(campaign), "-o", "out"]) == 0
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "ioim-turbulent" in page
+    assert (tmp_path / "out" / "figures" / "errors.svg").is_file()
+    assert len(list((tmp_path / "out").glob("*.csv"))) == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["ioim-laminar"], "two or more"),
+        (["ioim-laminar", "ioim-laminar"], "each once"),
+        (["no-such-thing", "ioim-laminar"], "no-such-thing"),
+        (["ioim-laminar", "foim", "--figures", "gif"], "--figures"),
+    ],
+)
+def test_what_can_t_be_compared_is_told_in_a_line(arguments, told, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["compare", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert (out, len(err.splitlines())) == ("", 1)
+    assert told in err
+    assert not Path("inerter-out").exists() or not list(Path("inerter-out").iterdir())
