@@ -128,7 +128,9 @@ def test_every_block_of_a_page_runs_and_prints_what_is_shown(
 ):
     monkeypatch.chdir(tmp_path)
     matplotlib.use("svg")
-    for name in ("my-records", "my-campaign", "fleet/a", "fleet/b", "lab/a", "lab/b", "other-records"):
+    for name in (
+        "my-records", "my-campaign", "fleet/a", "fleet/b", "lab/a", "lab/b", "other-records",
+    ):  # fmt: skip
         if page.name != "tutorial.md":
             (tmp_path / name).parent.mkdir(exist_ok=True)
             shutil.copytree(records, tmp_path / name)
