@@ -22,6 +22,7 @@ from models.motion import Motion, harmonic_motion
 
 Lines = NDArray[np.complex128]
 _FINE = 8192  # points of a cycle in which a joint's impacts are simulated
+_OUTSIDE = 0.01  # of the velocity's square, that is below a record's frequencies, or above
 _MOVES = 1e-9  # of the fundamental, below which a harmonic is round-off
 
 
@@ -152,6 +153,23 @@ class Observation:
     def frequency(self) -> float:
         """Hz, mean over windows."""
         return float(np.mean([w.frequency for w in self.windows]))
+
+    @cached_property
+    def span(self) -> tuple[float, float]:
+        """Hz: the frequency of a sine test, twice; else between which the motion is.
+
+        Below and above them is one percent each of the velocity's square.
+        """
+        if self.kind == "sine":
+            return self.frequency, self.frequency
+        omega = np.concatenate([w.omega for w in self.windows])
+        moving = np.concatenate(
+            [w.share * np.abs(w.project(self.motion.velocity)) ** 2 for w in self.windows]
+        )
+        order = np.argsort(omega)
+        below = np.cumsum(moving[order]) / max(float(moving.sum()), 1e-300)
+        low, high = omega[order][np.searchsorted(below, [_OUTSIDE, 1.0 - _OUTSIDE])]
+        return float(low) / (2.0 * np.pi), float(high) / (2.0 * np.pi)
 
     @property
     def amplitude(self) -> float:

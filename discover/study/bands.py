@@ -80,7 +80,7 @@ def _band(
         a for a, b in zip(accuracies, place, strict=True)
         if b == band and not a.observation.held_out
     ] or [a for a in accuracies if not a.observation.held_out]
-    frequencies = [w.frequency for a in inside for w in a.observation.windows]
+    spans = [a.observation.span for a in inside]
     chances = core_probabilities(found, band)
     ranked = sorted(chances.items(), key=lambda item: -item[1])
     structure = found.variants[found.banded.variants[band]].core
@@ -91,8 +91,8 @@ def _band(
     return StudyBand(
         lower=ends[0],
         upper=ends[1],
-        lower_hz=min(frequencies),
-        upper_hz=max(frequencies),
+        lower_hz=min(low for low, _ in spans),
+        upper_hz=max(high for _, high in spans),
         records=tuple(a.observation.file for a in inside),
         family=family_of([t.fitted.id for t in terms]),
         structure=ranked[0][0] if chances[structure] < ranked[0][1] else structure,
