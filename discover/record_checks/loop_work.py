@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as student
+from scipy.special import ndtri, stdtrit
 
 from models.checks import Array
 
@@ -133,9 +133,7 @@ def _mean_work(x: Array, force: Array, ends: Array) -> tuple[float, float]:
     noise = np.diff(force, 2) / np.sqrt(6.0)  # what a smooth force leaves: white noise
     moved = np.diff(x[int(ends[0]) : int(np.ceil(ends[-1])) + 1])
     if work.size == 1:
-        return float(work[0]), float(
-            student.ppf(_SURE, np.inf) * np.std(noise) * np.linalg.norm(moved)
-        )
+        return float(work[0]), float(ndtri(_SURE) * np.std(noise) * np.linalg.norm(moved))
     columns = np.ones((work.size, 1))
     if work.size >= _ENOUGH_LOOPS:
         change = np.diff(_speed(x, ends) ** 2)
@@ -146,7 +144,7 @@ def _mean_work(x: Array, force: Array, ends: Array) -> tuple[float, float]:
     left = work - columns @ found
     freedom = work.size - columns.shape[1]
     spread = float(left @ left) / freedom * np.linalg.pinv(columns.T @ columns)[0, 0]
-    return float(found[0]), float(student.ppf(_SURE, freedom) * np.sqrt(spread))
+    return float(found[0]), float(stdtrit(freedom, _SURE) * np.sqrt(spread))
 
 
 def _speed(x: Array, ends: Array) -> Array:
