@@ -56,6 +56,14 @@ class Divisions:
     log_prior: Array
     """(D,) nats."""
 
+    def only(self, ways: Sequence[int]) -> Divisions:
+        """Return some of the ways."""
+        some = list(ways)
+        return Divisions(
+            tuple(self.cuts[i] for i in some), self.shares[some],
+            tuple(self.brackets[i] for i in some), self.log_prior[some],
+        )  # fmt: skip
+
 
 def ordered(coordinate: Array) -> Indices:
     """Return the order of units along a coordinate (U,)."""

@@ -62,6 +62,8 @@ class Banded:
     """True where all but noise may be explained."""
     at_place: float
     """Log evidence at these sizes and this scale, nats."""
+    gradual: bool = False
+    """True where the last boundary is."""
 
     @property
     def bands(self) -> int:
@@ -154,7 +156,7 @@ class BandSearch:
         return self._banded(whole, None, np.zeros((1, 1), dtype=int), start)
 
     def divided_again(self, now: Banded, *, asked: bool) -> Banded | None:
-        """Return the best division with one band more.
+        """Return the best division with one band more; a gradual one only if it leaves but noise.
 
         None where there are too few units, or where it is not asked for and can't be more probable.
         """
@@ -170,7 +172,12 @@ class BandSearch:
             most = now.value + float(logsumexp(answer.value + ways.log_prior)) - now.at_place
             if most < now.value:  # nothing is left that one more band could explain
                 return None
-        return self._banded(ways, now, start, now.place)
+        found = self._banded(ways, now, start, now.place)
+        if found.quiet or not found.gradual:
+            return found
+        # What changes smoothly along a coordinate may be an error of any kind, as the remainder is.
+        kept = [i for i, cut in enumerate(ways.cuts) if not cut.width]
+        return self._banded(ways.only(kept), now, start[kept], now.place) if kept else None
 
     def _along(self, now: Banded) -> Mapping[str, Array]:
         """Return the coordinates along which a division may have one band more."""
@@ -212,6 +219,7 @@ class BandSearch:
             scale=scale,
             quiet=is_quiet({p: v for p, (v, _, _) in alone.items()}),
             at_place=float(last.value[0]),
+            gradual=best.cut.width > 0.0,
         )
 
     def _best(

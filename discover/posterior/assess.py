@@ -17,7 +17,7 @@ from discover.posterior.space import Part, Space, departures
 from discover.rows.columns import Behind
 
 _ROUNDS = 3  # of fitting and climbing
-_SMALL = -11
+_SMALL = -10
 """Power of two, of the force: what is left below it is nothing that a model need explain."""
 _ORDINARY = -3
 """Power of two, of what would make the whole force: by no more does dry friction differ from record
