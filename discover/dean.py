@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from discover.words import capitalize_first
 from models.checks import Array
 from models.device import Device
 from models.flow import dean_per_speed
@@ -204,10 +205,16 @@ def check_dean(
             both,
         )
     moves, fixed = (k_interval[0] <= value <= k_interval[1] for value in (-1.0, 0.0))
-    exponent_text = f"f_low ~ A^k with k from {k_interval[0]:.2f} to {k_interval[1]:.2f}"
+    exponent_text = (
+        "the boundary's frequency goes as amplitude^k, k from"
+        f" {k_interval[0]:.2f} to {k_interval[1]:.2f}"
+    )
     if not moves:
         return result(
-            "contradicted", f"{exponent_text}: the criterion needs k = -1.", dean, both
+            "contradicted",
+            f"{capitalize_first(exponent_text)}: the criterion needs k = -1.",
+            dean,
+            both,
         )
     if not holds:
         return result(
@@ -220,15 +227,15 @@ def check_dean(
     if fixed:
         return result(
             "undetermined",
-            f"The boundary lies at a Dean number of {span}, but {exponent_text} holds both -1 (the"
-            " criterion) and 0 (fixed in frequency). Amplitudes further apart would tell.",
+            f"The boundary lies at a Dean number of {span}, but {exponent_text}, which holds both"
+            " -1 (the criterion) and 0 (fixed in frequency). Amplitudes further apart would tell.",
             dean,
             both,
         )
     return result(
         "consistent",
         f"The boundary lies at a Dean number of {span}, which holds {criterion:g};"
-        f" {exponent_text} holds -1 and not 0.",
+        f" {exponent_text}, which holds -1 (the criterion) and not 0 (fixed in frequency).",
         dean,
         both,
     )

@@ -220,6 +220,9 @@ class EffectShape:
     """(k,) abscissa of the misfit that the effect was named from; empty where not shown."""
     measured: Array
     """(k,) N, that misfit: measured force less the rest of the model; empty where not shown."""
+    joined: bool = True
+    """Whether neighbours make a curve: not where a free motion comes back to a place by other
+    ways."""
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from discover.words import interval, significant
+from discover.words import quantity
 from models.terms import TERMS
 
 _ALWAYS = ("order", "exponent")  # shown at their defaults too
-_COUNTED = {"over": "tests"}
+_AFTER = {"over": "tests", "relative_speed": "of the test's greatest speed"}
+_NAMES = {
+    "relative_speed": "transition speed",
+    "presliding": "presliding over",
+    "stribeck_velocity": "Stribeck velocity",
+}
 _OF_A_TEST = ("over", "only")
 
 
@@ -21,7 +26,9 @@ def shape(term: Mapping[str, Any]) -> str:
     >>> shape({"id": "fractional-derivative", "order": 1.48, "order_interval": [1.42, 1.55]})
     'order 1.48 (1.42 to 1.55)'
     >>> shape({"id": "coulomb-friction", "transition_speed": 0.002, "presliding": 0.0})
-    'transition speed 0.002 m/s'
+    'transition speed 2 mm/s'
+    >>> shape({"id": "coulomb-friction", "presliding": 2.4e-5, "form": 1.0})
+    'presliding over 0.024 mm, an elastic slider'
     >>> shape({"id": "thermal-drift", "from_test": 2.0, "over": 7.0})
     'from test 2, over 7 tests'
     >>> shape({"id": "sensor-drift", "over": 1.0, "only": 3.0})
@@ -32,19 +39,22 @@ def shape(term: Mapping[str, Any]) -> str:
     parts = []
     known = TERMS.get(str(term.get("id")))
     alone = float(term.get("only") or 0.0)
+    described = known is not None and known.described is not None
     for parameter in () if known is None else known.parameters:
         name = parameter.name
         value = term.get(name)
         growing = bool(alone) and name == "power" and not term.get("over")
         if value is None or (value == parameter.default and name not in _ALWAYS and not growing):
             continue
-        if alone and name in _OF_A_TEST:
+        if (alone and name in _OF_A_TEST) or (described and not parameter.fitted):
             continue
-        unit = parameter.unit or _COUNTED.get(name, "")
-        unit_text = f" {unit}" if unit else ""
-        text = f"{name.replace('_', ' ')} {significant(value, 4)}{unit_text}"
-        spread = interval(term.get(f"{name}_interval"), 4)
-        parts.append(f"{text} ({spread})" if spread else text)
+        ends = term.get(f"{name}_interval")
+        text = quantity(value, parameter.unit or _AFTER.get(name, ""), ends, 4)
+        parts.append(f"{_NAMES.get(name, name.replace('_', ' '))} {text}")
+    if known is not None and known.described is not None:
+        given = {p.name: float(term.get(p.name, p.default)) for p in known.parameters}
+        parts += [text] if (text := known.described(given)) else []
     if alone:
         parts.append(f"in test {alone:g} only")
     return ", ".join(parts)
+

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -18,7 +19,11 @@ _NAMES = {
     "time-delay": "delay between channels",
 }
 
-_COORDINATES = {"speed": "speed amplitude", "frequency": "frequency"}
+_PREFIXED = {"m": ("mm", 1e3), "m/s": ("mm/s", 1e3), "s": ("ms", 1e3)}
+_SMALL = 0.1  # below which a length, a speed or a time is told in thousandths
+
+COORDINATES = {"dean": "Dean number", "speed": "speed amplitude", "frequency": "frequency"}
+"""What bands lie on, in words."""
 
 
 def term_name(identifier: str) -> str:
@@ -65,6 +70,20 @@ def significant(value: float | None, digits: int = 4) -> str:
     if "." in text:
         text = text.rstrip("0").rstrip(".")
     return text.replace("-", "−")
+
+
+_RAISED = str.maketrans("-.0123456789", "⁻·⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def raised(unit: str) -> str:
+    """Return a unit with raised exponents, for pictures.
+
+    Examples
+    --------
+    >>> raised("N s^2/m^2"), raised("kg")
+    ('N s²/m²', 'kg')
+    """
+    return re.sub(r"\^(-?[\d.]+)", lambda found: found[1].translate(_RAISED), unit)
 
 
 def percent(value: float | None) -> str:
@@ -127,6 +146,39 @@ def _end(value: float | None, instead: str, digits: int) -> str:
     return instead if value is None else significant(value, digits)
 
 
+def quantity(
+    value: float, unit: str, ends: Sequence[float | None] | None = None, digits: int = 3
+) -> str:
+    """Return an SI value with its unit and its interval, small ones in thousandths.
+
+    Parameters
+    ----------
+    value : float
+        In `unit`.
+    unit : str
+        SI unit; "1" or "" for a plain number.
+    ends : sequence of float or None
+        Of the interval, None where it is open; None where there is none.
+    digits : int
+        Significant ones.
+
+    Examples
+    --------
+    >>> quantity(0.00226, "m/s", [0.0016, None]), quantity(2.4e-5, "m"), quantity(0.5, "s")
+    ('2.26 mm/s (1.6 to ∞)', '0.024 mm', '0.5 s')
+    >>> quantity(0.01, "1")
+    '0.01'
+    """
+    shown, factor = unit, 1.0
+    if unit in _PREFIXED and 0.0 < abs(value) < _SMALL:
+        shown, factor = _PREFIXED[unit]
+    text = significant(factor * value, digits)
+    if shown not in ("", "1"):
+        text += f" {shown}"
+    spread = [None if e is None else factor * e for e in ends] if ends else None
+    return f"{text} ({interval(spread, digits)})" if spread else text
+
+
 def listed(items: Iterable[str], last: str = "and") -> str:
     """Return items as a list in a sentence.
 
@@ -180,10 +232,10 @@ def coordinate_name(document: Mapping[str, Any]) -> str:
     >>> coordinate_name({"coordinate": "dean", "dean_check": {"convention": "standard"}})
     'Dean number (standard convention)'
     """
-    name = str(document["coordinate"])
-    if name == "dean":
-        return f"Dean number ({document['dean_check']['convention']} convention)"
-    return _COORDINATES.get(name, name)
+    name = COORDINATES[str(document["coordinate"])]
+    if document["coordinate"] == "dean":
+        return f"{name} ({document['dean_check']['convention']} convention)"
+    return name
 
 
 def coordinate_value(value: float, coordinate: str) -> str:

@@ -73,7 +73,8 @@ def shape_of(
     chosen = np.unique(np.linspace(0, stop - 1, min(_SHOWN, stop)).astype(int))
     order = np.argsort(along[chosen], kind="stable")
     varies = float(np.abs(np.diff(added[chosen][order])).sum())
-    if varies < _SCATTERS * max(float(np.ptp(added[chosen])), 1e-300):
+    smooth = varies < _SCATTERS * max(float(np.ptp(added[chosen])), 1e-300)
+    if smooth:
         chosen = chosen[order]
     half = 0.5 * (named.interval[1] - named.interval[0])
     relative = half / abs(named.coefficient) if named.coefficient else 0.0
@@ -81,6 +82,7 @@ def shape_of(
     return EffectShape(
         number, named.effect, abscissa, _UNITS[abscissa], along[chosen], added[chosen],
         added[chosen] - band, added[chosen] + band, along[chosen], (o.measured - rest)[chosen],
+        joined=smooth or o.kind == "sine" or abscissa == "time",
     )
 
 

@@ -110,7 +110,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
     shape = ""
     if verdict not in ("agrees", "closed"):
         told = (
-            where_in_words(left).rstrip("."),
+            where_in_words(left).rstrip(".") if any(p.significant for p in left) else "",
             leftover_in_words(baseline.rows, left, final.models),
         )
         shape = "; ".join(t for t in told if t)

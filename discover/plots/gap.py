@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,11 @@ from discover.plots.style import (
     scaled,
 )
 from discover.plots.svg import to_svg
+from discover.words import short_name
 
 _ROW = 17.0
+_NARROW = 15  # letters of a line of a round's name
+_LEVEL = 5  # names that have room side by side
 
 
 def gap_by_record(records: Sequence[Mapping[str, Any]]) -> str | None:
@@ -93,10 +97,10 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
         return None
     names = ["baseline"]
     for r in rounds:
-        instead = "\ninstead" if r.get("dropped") else ""
-        names.append("+ " + r["effect"].replace("-", "-\n") + instead)
+        instead = " instead" if r.get("dropped") else ""
+        names.append("\n".join(wrap(f"+ {short_name(r['effect'])}{instead}", _NARROW)))
     with house_style():
-        figure = new_figure(620, 290)
+        figure = new_figure(620, 290 if len(names) <= _LEVEL else 350)
         axes = figure.add_subplot()
         axes.set_yscale("log")
         for key, colour, label in (("gap", ACCENT, "fitted"), ("held_out", MODEL, "not fitted")):
@@ -112,7 +116,13 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
                 linestyle=(0, (4, 2)),
                 label="noise floor",
             )
-        axes.set_xticks(range(len(names)), names)
+        if len(names) > _LEVEL:  # names would run into each other
+            slanted = [name.replace("\n", " ") for name in names]
+            axes.set_xticks(
+                range(len(names)), slanted, rotation=28, ha="right", rotation_mode="anchor"
+            )
+        else:
+            axes.set_xticks(range(len(names)), names)
         axes.tick_params(axis="x", labelcolor=INK, length=0)
         axes.set_xlim(-0.3, len(names) - 0.7)
         low, high = axes.get_ylim()
@@ -141,19 +151,17 @@ def effect_shape(shape: EffectShape, *, name: str) -> str:
                 color="#aab4c0",
                 label="measured less the rest",
             )
-        axes.fill_between(
-            x_scale * shape.x,
-            scale * shape.lower,
-            scale * shape.upper,
-            color=MODEL,
-            alpha=0.2,
-            linewidth=0.0,
-            label="95 % band",
-        )
-        axes.plot(x_scale * shape.x, scale * shape.force, color=MODEL, label="the effect")
+        x, lower, upper = x_scale * shape.x, scale * shape.lower, scale * shape.upper
+        band: dict[str, Any] = {"color": MODEL, "alpha": 0.2, "label": "95 % band"}
+        if shape.joined:
+            axes.fill_between(x, lower, upper, linewidth=0.0, **band)
+        else:
+            axes.vlines(x, lower, upper, linewidth=1.6, **band)
+        look = "-" if shape.joined else "."
+        axes.plot(x, scale * shape.force, look, markersize=4.0, color=MODEL, label="the effect")
         axes.set(xlabel=f"{shape.abscissa.capitalize()} ({x_unit})", ylabel=f"Force ({unit})")
         figure.legend(loc="outside upper left", ncols=3)
-        return to_svg(figure, name=name, title=f"Shape of {shape.effect}")
+        return to_svg(figure, name=name, title=f"Shape of {short_name(shape.effect)}")
 
 
 def contest(entry: Mapping[str, Any], *, name: str) -> str:
@@ -174,12 +182,12 @@ def contest(entry: Mapping[str, Any], *, name: str) -> str:
         axes.set_xlim(0.0, 112.0)
         axes.set_xticks([0, 25, 50, 75, 100])
         axes.set_ylim(len(parts) - 0.5, -0.5)
-        axes.set_yticks(range(len(parts)), [label for label, _ in parts])
+        axes.set_yticks(range(len(parts)), [short_name(label) for label, _ in parts])
         axes.tick_params(axis="y", length=0, labelcolor=INK)
         axes.grid(visible=False, axis="y")
         axes.spines["left"].set_visible(False)
         axes.set_xlabel("Probability of the effect (%)")
-        return to_svg(figure, name=name, title=f"Candidates beside {entry['effect']}")
+        return to_svg(figure, name=name, title=f"Candidates beside {short_name(entry['effect'])}")
 
 
 def misfit_surface(data: GapFigureData) -> str | None:

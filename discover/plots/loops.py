@@ -19,7 +19,8 @@ from discover.plots.style import (
 from discover.plots.svg import series, to_svg
 from models.checks import Array
 
-_MOST_LOOPS = 24
+MOST_LOOPS = 24
+"""Sine tests whose loops are drawn over each other."""
 _LOOP_POINTS = 120
 _GAP = 3.0  # times the middle step between samples that are shown, where a stretch ends
 
@@ -99,7 +100,7 @@ def all_loops(records: Sequence[ShownRecord], *, name: str) -> str | None:
     sines = sorted((r for r in records if r.frequency is not None and r.force.size), key=top_speed)
     if len(sines) < 2:
         return None
-    places = np.unique(np.linspace(0, len(sines) - 1, min(len(sines), _MOST_LOOPS)).astype(int))
+    places = np.unique(np.linspace(0, len(sines) - 1, min(len(sines), MOST_LOOPS)).astype(int))
     shown = [sines[i] for i in places]
     force, unit = scaled(max(_peak(r.force) for r in shown), "N")
     with house_style():

@@ -37,10 +37,10 @@ def record_view(record: Record, *, name: str) -> str:
             scale, unit = scaled(float(np.abs(record.displacement).max()), "m")
             x = scale * record.displacement
             upper.plot(*_envelope(record.time, x), color=ACCENT, linewidth=0.9)
-            upper.set_ylabel(f"Displacement ({unit})")
+            upper.set_ylabel(f"Displ. ({unit})")
             thin = slice(None, None, max(1, x.size // _POINTS))
             loops.plot(x[thin], force_scale * record.force[thin], color=INK, linewidth=0.6)
-            loops.set_xlabel(f"Displacement ({unit})")
+            loops.set(xlabel=f"Displacement ({unit})", ylabel=f"Force ({force_unit})")
         for axes in (upper, lower, loops):
             axes.locator_params(nbins=4)
         figure.align_ylabels([upper, lower])

@@ -45,7 +45,7 @@ def residual(record: ShownRecord, *, name: str) -> str | None:
         line.set_label("measured")
         series(line, "measured")
         if first.noise.size:
-            (line,) = spectrum.plot(first.frequency, first.noise, color=MUTED, linewidth=1.8)
+            (line,) = spectrum.plot(first.frequency, first.noise, color=ACCENT, linewidth=1.6)
             line.set_label("noise")
             series(line, "noise")
         force, unit = scaled(_peak([r.over_phase for r in record.responses]), "N")

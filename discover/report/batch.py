@@ -10,7 +10,15 @@ from markupsafe import Markup
 
 from discover.plots.fleet import over_devices
 from discover.report.environment import render
-from discover.words import capitalize_first, counted, listed, named_line, significant, spread
+from discover.words import (
+    capitalize_first,
+    counted,
+    listed,
+    named_line,
+    raised,
+    significant,
+    spread,
+)
 
 _MOST_PICTURES = 24
 
@@ -111,6 +119,6 @@ def batch_report(
 def _picture(quantity: Mapping[str, Any], number: int) -> Markup:
     if number >= _MOST_PICTURES:
         return Markup("")
-    unit = f" ({quantity['unit']})" if quantity["unit"] not in ("", "1") else ""
+    unit = f" ({raised(quantity['unit'])})" if quantity["unit"] not in ("", "1") else ""
     label = capitalize_first(quantity_name(quantity)) + unit
     return Markup(over_devices(quantity, name=f"fleet-{number}", label=label))

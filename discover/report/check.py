@@ -186,7 +186,8 @@ def _plan_caption(data: PlanFigureData) -> str:
     text = "Each mark is one sine test"
     if windows:
         text += ", or one window of a record that is none, at its mean frequency and amplitude"
-    text += "; its colour, and the number under it, is the force's noise over the force."
+    named = "" if windows else ", and the number under it where there is room,"
+    text += f"; its colour{named} is the force's noise over the force."
     if any(t.held_out for t in data.tests):
         text += " Hollow marks are never fitted."
     if data.dean_per_speed_paper:

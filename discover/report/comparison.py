@@ -10,7 +10,16 @@ from discover.plots.model_errors import model_errors
 from discover.report.environment import render
 from discover.report.files import page_files, table_csv
 from discover.report.records import only_drawn, picture
-from discover.words import interval, listed, named_line, percent, short_name, significant
+from discover.words import (
+    COORDINATES,
+    capitalize_first,
+    interval,
+    listed,
+    named_line,
+    percent,
+    short_name,
+    significant,
+)
 
 _MOST = 6  # quantities that a line names
 
@@ -31,17 +40,25 @@ def comparison_lines(document: Mapping[str, Any]) -> list[str]:
         some = [_value_line(q) for q in quantities if q["differs"] is differs]
         more = [f"{len(some) - _MOST} more"] if len(some) > _MOST else []
         lines.append(f"{name}: " + ("; ".join([*some[:_MOST], *more]) or "nothing") + ".")
-    unknown = [q for q in quantities if q["differs"] is None]
-    if unknown:
-        names = dict.fromkeys(f"{quantity_name(q)} ({q['why']})" for q in unknown)
-        shown = list(names)[:_MOST]
-        more = [f"{len(names) - _MOST} more"] if len(names) > _MOST else []
-        lines.append("Can't be told: " + "; ".join([*shown, *more]) + ".")
+    unknown: dict[tuple[bool, str], list[str]] = {}
+    for q in quantities:
+        if q["differs"] is None:
+            alone = sum(v is not None for v in q["values"]) < 2
+            unknown.setdefault((alone, q["why"]), []).append(quantity_name(q))
+    for (alone, why), names in unknown.items():
+        shown = list(dict.fromkeys(names))
+        more = [f"{len(shown) - _MOST} more"] if len(shown) > _MOST else []
+        told = "; ".join([*shown[:_MOST], *more])
+        lines.append(
+            f"{capitalize_first(why)}: {told}." if alone else f"Can't be told: {told} ({why})."
+        )
     for entry in document["errors"]:
         ranked = sorted(entry["models"], key=lambda m: int(m["rank"]))
         misses = listed(f"{m['name']} {percent(_miss(m))}" for m in ranked)
-        lines.append(f"Errors on {entry['campaign']['title']}: {misses} of the force, on "
-                     f"{entry['ranked_on']}; noise {percent(entry['noise_percent'])}.")
+        lines.append(
+            f"Errors: {misses} of the force, on {entry['ranked_on']} of"
+            f" “{entry['campaign']['title']}”; noise {percent(entry['noise_percent'])}."
+        )
     lines += [f"Note: {f['text']}" for f in document["findings"]]
     return lines
 
@@ -53,7 +70,7 @@ def structures(side: Mapping[str, Any]) -> str:
         return str(names[0])
     ends = [b["upper"] for b in side["bands"][:-1]]
     parts = [f"{n} below {significant(e, 3)}" for n, e in zip(names, ends, strict=False)]
-    return ", ".join([*parts, f"{names[-1]} above"]) + f" ({side['coordinate']})"
+    return ", ".join([*parts, f"{names[-1]} above"]) + f" ({COORDINATES[side['coordinate']]})"
 
 
 def quantity_name(quantity: Mapping[str, Any]) -> str:
@@ -61,12 +78,12 @@ def quantity_name(quantity: Mapping[str, Any]) -> str:
     term = short_name(quantity["term"])
     what = quantity["quantity"].replace("_", " ")
     name = term if what == "coefficient" else f"{what} of {term}"
-    return name if quantity["band"] == "everywhere" else f"{name}, {quantity['band']}"
+    return name if quantity["band"] == "everywhere" else f"{name} ({quantity['band']})"
 
 
 def _value_line(quantity: Mapping[str, Any]) -> str:
     values = [value_text(v) for v in quantity["values"] if v is not None]
-    return f"{quantity_name(quantity)} {listed(values)}"
+    return f"{quantity_name(quantity)}: {listed(values)}"
 
 
 def value_text(value: Mapping[str, Any] | None) -> str:

@@ -137,7 +137,7 @@ def draft_report(
         command=command,
         document_name="init.json",
         document=document,
-        verdict=[named_line(line) for line in (lines[0], lines[-1])],
+        verdict=[named_line(lines[0]), ("Next", f"`{lines[-1].removeprefix('Next: ')}`")],
         told=list(lines[1:-1]),
         toml=draft.toml(),
         figures=[Markup(svg) for svg in figures.values()],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -12,7 +13,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from discover import words
-from discover.report.equation import equation
+from discover.report.equation import equation, symbols
 from discover.report.friction_parts import whole_friction
 from discover.shape_words import shape
 from discover.study.verdict import not_ruled_out
@@ -35,7 +36,7 @@ def unit(text: str) -> Markup:
 
 
 def prose(text: str) -> Markup:
-    """Return a sentence as HTML: code between backticks, raised powers, percents kept together.
+    """Return a sentence as HTML: code between backticks, raised powers, minus signs, percents kept.
 
     Examples
     --------
@@ -43,10 +44,36 @@ def prose(text: str) -> Markup:
     'run <code>inerter gap &lt;x&gt;</code>'
     >>> str(prose("5 % of it grows as frequency^(0.4 ± 0.1)")).replace(words.THIN_SPACE, "_")
     '5_% of it grows as frequency<sup>0.4 ± 0.1</sup>'
+    >>> str(prose("k from -1.5 to -0.9, by `--column force=-1`"))
+    'k from −1.5 to −0.9, by <code>--column force=-1</code>'
     """
     plain = str(escape(text)).replace(" %", f"{words.THIN_SPACE}%")
-    raised = re.sub(r"\^(?:\(([^()]+)\)|(\w)\b)", r"<sup>\1\2</sup>", plain)
-    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", raised))
+    # Every other part stands between backticks.
+    parts = plain.split("`") if plain.count("`") % 2 == 0 else [plain]
+    told = [f"<code>{p}</code>" if i % 2 else _typeset(p) for i, p in enumerate(parts)]
+    return Markup("".join(told))
+
+
+def _typeset(text: str) -> str:
+    """Return escaped text with minus signs before numbers and raised powers."""
+    signed = re.sub(r"(?<![\w.)^-])-(?=\d)", "−", text)
+    return re.sub(r"\^(?:\(([^()]+)\)|(\w)\b)", r"<sup>\1\2</sup>", signed)
+
+
+def grouped(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return findings with those that say the same of several records made one.
+
+    Examples
+    --------
+    >>> said = {"level": "note", "text": "has gaps"}
+    >>> grouped([{**said, "record": "a.csv"}, {**said, "record": "b.csv"}])
+    [{'level': 'note', 'text': 'has gaps', 'records': ['a.csv', 'b.csv']}]
+    """
+    found: dict[tuple[str, str], list[str]] = {}
+    for f in findings:
+        records = found.setdefault((str(f["level"]), str(f["text"])), [])
+        records += [str(f["record"])] if f.get("record") else []
+    return [{"level": k[0], "text": k[1], "records": records} for k, records in found.items()]
 
 
 @cache
@@ -64,15 +91,18 @@ def environment() -> jinja2.Environment:
         short_name=words.short_name,
         significant=words.significant,
         percent=words.percent,
+        quantity=words.quantity,
         probability=words.probability,
         interval=words.interval,
         counted=words.counted,
         band_range=words.band_range,
         not_ruled_out=not_ruled_out,
         equation=equation,
+        symbols=symbols,
         whole_friction=whole_friction,
         capitalize_first=words.capitalize_first,
         prose=prose,
+        grouped=grouped,
         spread=words.spread,
         unit=unit,
         shape=shape,

@@ -11,7 +11,7 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from discover.shape_words import shape
-from discover.words import short_name, significant
+from discover.words import percent, quantity, short_name, significant
 
 Entry = Mapping[str, Any]
 
@@ -20,7 +20,7 @@ _V = Markup("<mi>v</mi>")
 _A = Markup("<mi>a</mi>")
 _CURVE = Markup("<mrow><mi>s</mi><mo>(</mo>{}<mo>,</mo>{}<mo>)</mo></mrow>").format(_X, _V)
 _SPEED = Markup("<mrow><mo>|</mo>{}<mo>|</mo></mrow>").format(_V)
-_SIGN = Markup("<mrow><mi>sgn</mi><mo>&#x2061;</mo>{}</mrow>").format(_V)
+_SIGN = Markup("<mrow><mi>sgn</mi><mo>(</mo>{}<mo>)</mo></mrow>").format(_V)
 
 
 def equation(terms: Sequence[Entry]) -> Markup:
@@ -48,9 +48,32 @@ def equation(terms: Sequence[Entry]) -> Markup:
         parts.append(_math(_signed(float(term["coefficient"]), first=first) + _factor(term)))
     if len(parts) == 1:
         parts.append(_math(Markup("<mn>0</mn>")))
-    said = [_CHANGES[c["id"]].format(significant(c["coefficient"], 3)) for c in changes]
+    said = [_CHANGES[c["id"]](float(c["coefficient"])) for c in changes]
     text = Markup(", ").join(escape(s) for s in said)
     return Markup(" ").join(parts) + (Markup(", ") + text if said else Markup(""))
+
+
+def symbols(terms: Sequence[Entry]) -> str:
+    """Return what the letters of these terms' equations stand for.
+
+    Parameters
+    ----------
+    terms : sequence of mapping
+        As in a document, of all bands that are shown.
+
+    Examples
+    --------
+    >>> symbols([{"id": "viscous-damping", "coefficient": 1.0}])
+    'In SI units: x, v and a are displacement, velocity and acceleration.'
+    """
+    told = ["In SI units: x, v and a are displacement, velocity and acceleration."]
+    ids = {str(t["id"]) for t in terms}
+    if "fractional-derivative" in ids:
+        told.append("D with a power is the fractional derivative of that order.")
+    curved = any(t["id"] == "coulomb-friction" and _friction(t) == _CURVE for t in terms)
+    if curved or "stribeck-friction" in ids:
+        told.append("s(x, v) is the curve, from −1 to 1, by which friction reverses.")
+    return " ".join(told)
 
 
 def _math(inside: Markup) -> Markup:
@@ -76,6 +99,29 @@ def _power_law(term: Entry) -> Markup:
     return _power(_SPEED, term["exponent"]) + _SIGN
 
 
+def _asymmetric(term: Entry) -> Markup:
+    power = float(term.get("power", 1.0))
+    size = _SPEED if power == 1.0 else _power(_SPEED, power)
+    side = {1.0: " of v > 0", -1.0: " of v < 0"}.get(float(term.get("side", 0.0)), "")
+    return size + (Markup("<mtext>{}</mtext>").format(side) if side else Markup(""))
+
+
+def _stribeck(term: Entry) -> Markup:
+    """Return the fall with speed, its number in it, times the friction's curve."""
+    speed = significant(float(term["stribeck_velocity"]), 3)
+    ratio = Markup("<mfrac>{}<mn>{}</mn></mfrac>").format(_V, speed)
+    squared = Markup("<msup><mrow><mo>(</mo>{}<mo>)</mo></mrow><mn>2</mn></msup>").format(ratio)
+    size = Markup("<mrow><mo>|</mo>{}<mo>|</mo></mrow>").format(ratio)
+    form = int(term.get("form", 0.0))
+    if form == 2:
+        below = Markup("<mrow><mn>1</mn><mo>+</mo>{}</mrow>").format(squared)
+        fall = Markup("<mfrac><mn>1</mn>{}</mfrac>").format(below)
+    else:
+        power = size if form else squared
+        fall = Markup("<msup><mi>e</mi><mrow><mo>−</mo>{}</mrow></msup>").format(power)
+    return fall + _CURVE
+
+
 def _friction(term: Entry) -> Markup:
     return _CURVE if shape(term) or term.get("parts") else _SIGN
 
@@ -87,19 +133,26 @@ _FACTORS: Mapping[str, Callable[[Entry], Markup]] = {
     "power-law-damping": _power_law,
     "fractional-derivative": _fractional,
     "coulomb-friction": _friction,
+    "asymmetric-damping": _asymmetric,
+    "stribeck-friction": _stribeck,
     "stiffness": lambda _: _X,
     "cubic-stiffness": lambda _: _power(_X, 3),
     "force-offset": lambda _: Markup(""),
 }
 """How a term is written after its coefficient; others by name."""
 
-_CHANGES = {
-    "time-delay": "read {} s late",
-    "sensor-gain": "read with a gain off by {}",
-    "series-compliance": "through a spring in series of {} m/N",
-    "backlash": "through a joint with play",
-    "cavitation": "limited in one direction by torn oil",
-    "sensor-clipping": "read by a channel that saturates",
+
+def _delayed(seconds: float) -> str:
+    return f"read {quantity(abs(seconds), 's')} {'early' if seconds < 0.0 else 'late'}"
+
+
+_CHANGES: Mapping[str, Callable[[float], str]] = {
+    "time-delay": _delayed,
+    "sensor-gain": lambda gain: f"read with a gain off by {percent(100.0 * gain)}",
+    "series-compliance": lambda c: f"through a spring in series of {significant(c, 3)} m/N",
+    "backlash": lambda _: "through a joint with play",
+    "cavitation": lambda _: "limited in one direction by torn oil",
+    "sensor-clipping": lambda _: "read by a channel that saturates",
 }
 """What acts on the motion or on the whole force, and so is no summand."""
 

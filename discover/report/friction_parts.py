@@ -27,7 +27,7 @@ def whole_friction(terms: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     ...          {**part, "coefficient": 20.0, "presliding": 2e-5}]
     >>> (whole,) = whole_friction(parts)
     >>> whole["coefficient"], whole["parts"]
-    (120.0, '100 N with transition speed 0.001 m/s and 20 N with presliding 2×10⁻⁵ m')
+    (120.0, '100 N (transition speed 1 mm/s) and 20 N (presliding over 0.02 mm)')
     """
     parts = [t for t in terms if t["id"] == FRICTION]
     if len(parts) < 2:
@@ -37,7 +37,7 @@ def whole_friction(terms: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
         "coefficient": sum(p["coefficient"] for p in parts),
         "unit": parts[0]["unit"],
         "parts": listed(
-            f"{significant(p['coefficient'], 3)} {p['unit']} with {shape(p) or 'a jump'}"
+            f"{significant(p['coefficient'], 3)} {p['unit']} ({shape(p) or 'a jump'})"
             for p in parts
         ),
     }

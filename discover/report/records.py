@@ -8,7 +8,7 @@ from typing import Any
 from markupsafe import Markup
 
 from discover.figure_data import RecordCurves, ShownRecord
-from discover.plots.loops import all_loops, record_curves
+from discover.plots.loops import MOST_LOOPS, all_loops, record_curves
 from discover.plots.representative import representative
 from discover.plots.residuals import over_tests, residual
 from discover.plots.stiffness import stiffness
@@ -72,9 +72,16 @@ def record_section(records: Sequence[ShownRecord], figures: Figures) -> dict[str
         "stiffness": picture(figures, "stiffness"),
         "stiffness_caption": _stiffness_caption(records, sines=sines, wide=wide),
         "all_loops": picture(figures, "all-loops"),
+        "loops_caption": _loops_caption(records),
         "over_tests": picture(figures, "over-tests"),
         "wide": wide,
     }
+
+
+def _loops_caption(records: Sequence[ShownRecord]) -> str:
+    sines = sum(r.frequency is not None and bool(r.force.size) for r in records)
+    of = "each sine test" if sines <= MOST_LOOPS else f"{MOST_LOOPS} of the {sines} sine tests"
+    return f"One cycle of {of}, dark slow, light fast; the model dashed."
 
 
 def _heading(record: ShownRecord) -> str:

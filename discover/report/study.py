@@ -22,7 +22,7 @@ from discover.study.verdict import (
     structure_name,
     verdict_lines,
 )
-from discover.words import named_line, remainder_text, significant
+from discover.words import coordinate_name, named_line, remainder_text, significant
 
 _RECORD_COLUMNS = (
     "file", "kind", "held_out", "frequency", "amplitude", "band", "structure", "dean_paper",
@@ -131,6 +131,8 @@ def study_report(
         shown=record_section(data.records, figures),
         records=data.records,
         held_out=sum(r.held_out for r in data.records),
+        coordinate=coordinate_name(document),
+        all_terms=[t for band in document["bands"] for t in band["terms"]],
         dean=any(r.dean_paper is not None for r in data.records),
         baselines=data.baselines,
         check={**check, **document["dean_check"]},

@@ -23,6 +23,8 @@ from discover.figure_data import BaselineAnswer
 from discover.regression.least_squares import solve
 from discover.rows import RecordRows
 from discover.rows.columns import force_columns
+from discover.shape_words import shape
+from discover.words import short_name
 from models.checks import Array
 from models.constitutive import FittedTerm
 
@@ -73,9 +75,9 @@ def candidate_terms(friction: Sequence[FittedTerm]) -> list[FittedTerm]:
 
 
 def label(fitted: FittedTerm) -> str:
-    """Return a term's name in answers: its id and shape."""
-    shape = ", ".join(f"{value:.3g}" for value in fitted.shape.values() if value)
-    return f"{fitted.id} ({shape})" if shape else fitted.id
+    """Return a term's name in answers, with its shape."""
+    told = shape({"id": fitted.id, **fitted.shape})
+    return f"{short_name(fitted.id)} ({told})" if told else short_name(fitted.id)
 
 
 def _candidates(rows: Sequence[RecordRows], terms: Sequence[FittedTerm]) -> _Candidates:

@@ -14,6 +14,7 @@ from discover.study.options import StudyOptions
 from discover.study.prepare import Prepared, observation_findings
 from discover.study.result import Nuisance, StudyBand
 from discover.study.verdict import MOST_LEFT
+from discover.words import capitalize_first, listed, quantity, short_name
 from models.cores import CORES
 from models.terms import TERMS
 
@@ -73,8 +74,8 @@ def _about_band(index: int, band: StudyBand, count: int) -> list[Finding]:
     result = []
     name = f"Band {index + 1}" if count > 1 else "The records"
     if len(band.equivalents) > 1:
-        names = ", ".join(f"{s} ({100 * p:.0f} %)" for s, p in band.equivalents)
-        result.append(Finding("warning", f"{name}: the data can't tell apart {names}."))
+        names = listed((f"{s} ({100 * p:.0f} %)" for s, p in band.equivalents), last="from")
+        result.append(Finding("warning", f"{name}: the data can't tell {names}."))
     low, high = band.remainder.interval
     if low > MOST_LEFT * band.noise_percent:
         result.append(
@@ -119,11 +120,14 @@ def _about_extras(band: StudyBand) -> list[Finding]:
     for extra in band.extras:
         name = extra.term.fitted.id
         if extra.probability < _UNSURE and extra.alternatives:
-            others = ", ".join(f"{n} ({100 * p:.0f} %)" for n, p in extra.alternatives)
+            others = listed(
+                (f"{short_name(n)} ({100 * p:.0f} %)" for n, p in extra.alternatives), last="or"
+            )
             result.append(
                 Finding(
                     "warning",
-                    f"{name} ({100 * extra.probability:.0f} %) may as well be {others}.",
+                    f"{capitalize_first(short_name(name))} ({100 * extra.probability:.0f} %) may as"
+                    f" well be {others}.",
                 )
             )
     return result
@@ -155,10 +159,9 @@ def _not_as_asked(
 
 def _about_nuisance(nuisance: Nuisance) -> Finding:
     term = TERMS[nuisance.id]
-    low, high = nuisance.interval
-    unit = "" if nuisance.unit == "1" else f" {nuisance.unit}"
+    size = quantity(nuisance.value, nuisance.unit, nuisance.interval)
     return Finding(
         "note",
-        f"{nuisance.id} may belong to a measuring channel: {term.summary}; it is"
-        f" {nuisance.value:.3g}{unit} ({low:.3g} to {high:.3g}). The model holds it.",
+        f"{capitalize_first(short_name(nuisance.id))} may belong to a measuring channel:"
+        f" {term.summary}, {size}. The model holds it.",
     )

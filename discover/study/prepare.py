@@ -100,7 +100,7 @@ def observation_findings(observations: Sequence[Observation]) -> tuple[Finding, 
     return tuple(
         Finding(
             "note",
-            f"is a {o.kind} record; force and terms are compared up to {o.cutoff:.3g} Hz,"
+            f"force and terms are compared up to {o.cutoff:.3g} Hz,"
             " where the displacement stands clear of its noise.",
             o.file,
         )

@@ -15,6 +15,7 @@ from discover.words import (
     listed,
     percent,
     probability,
+    quantity,
     remainder_text,
     short_name,
     significant,
@@ -155,9 +156,8 @@ def extras_line(document: Mapping[str, Any]) -> str:
 
 
 def _extra(extra: Mapping[str, Any]) -> str:
-    unit = "" if extra["unit"] == "1" else f" {extra['unit']}"
-    text = f"{short_name(str(extra['id']))} {significant(extra['coefficient'], 3)}"
-    text += f" ({interval(extra['interval'])}){unit}"
+    size = quantity(extra["coefficient"], extra["unit"], extra["interval"])
+    text = f"{short_name(str(extra['id']))} {size}"
     told = shape({key: value for key, value in extra.items() if not key.endswith("_interval")})
     if told:
         text += f", {told}"

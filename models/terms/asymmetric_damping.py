@@ -28,6 +28,14 @@ def starts(scales: Scales) -> list[Start]:
     return [Start.one(power=1.0, side=0.0), *one_way]
 
 
+def described(shape: Shape) -> str:
+    """Return in which direction and at which power of speed the force is there."""
+    side, power = shape.get("side", 0.0), shape.get("power", 1.0)
+    where = {1.0: "in extension only", -1.0: "in compression only"}.get(side, "")
+    how = "" if power == 1.0 else f"with speed to the power {power:g}"
+    return " ".join(part for part in (where, how) if part)
+
+
 TERM = Term(
     "asymmetric-damping",
     "N s^{power}/m^{power}",
@@ -39,4 +47,5 @@ TERM = Term(
     ),
     mistaken_for=("force-offset", "cavitation"),
     starts=starts,
+    described=described,
 )

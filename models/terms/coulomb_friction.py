@@ -80,6 +80,13 @@ def _doubling(low: float, high: float) -> list[float]:
     return [float(v) for v in np.exp(np.arange(np.log(low), np.log(high), np.log(2.0)))]
 
 
+def described(shape: Shape) -> str:
+    """Return which curve a shape has, where it is not the plain one."""
+    if not shape.get("form", 0.0):
+        return ""
+    return "an elastic slider" if shape.get("presliding", 0.0) else "a slow approach, v/√(v²+v_t²)"
+
+
 TERM = Term(
     "coulomb-friction",
     "N",
@@ -99,5 +106,6 @@ TERM = Term(
     follows=lambda shape: "path" if shape["presliding"] > 0.0 else "motion",
     starts=starts,
     curves=curves,
+    described=described,
     departure=0.3,
 )

@@ -86,6 +86,14 @@ def starts(scales: Scales) -> list[Start]:
     ]
 
 
+_FORMS = ("an elastic slider (Jenkins)", "an exponential approach (Dahl)", "many sliders (Iwan)")
+
+
+def described(shape: Shape) -> str:
+    """Return which kind of hysteresis it is."""
+    return _FORMS[int(shape.get("form", JENKINS))]
+
+
 TERM = Term(
     "hysteresis",
     "N",
@@ -99,4 +107,5 @@ TERM = Term(
     mistaken_for=("coulomb-friction", "stiffness", "stribeck-friction"),
     follows="path",
     starts=starts,
+    described=described,
 )

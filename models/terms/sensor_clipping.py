@@ -55,6 +55,11 @@ def starts(scales: Scales) -> list[Start]:
     return even + uneven
 
 
+def described(shape: Shape) -> str:
+    """Return which rail clips, where not both do."""
+    return {1.0: "above only", -1.0: "below only"}.get(shape.get("side", 0.0), "")
+
+
 TERM = Term(
     "sensor-clipping",
     "1",
@@ -71,4 +76,5 @@ TERM = Term(
     bounds=lambda shape: (0.0, 1.0),
     starts=starts,
     of_channel=True,
+    described=described,
 )

@@ -92,7 +92,7 @@ def _bounds(shape: Shape) -> tuple[float, float]:
 TERM = Term(
     "sensor-gain",
     "1",
-    "the force channel reads 1 + g times the force",
+    "the force channel reads 1 + g times the force, g the coefficient",
     transform=transform,
     acts="output",
     parameters=(

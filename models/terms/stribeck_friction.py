@@ -47,6 +47,14 @@ def starts(scales: Scales) -> list[Start]:
     return plain + bristles
 
 
+_FALLS = ("", "falling as exp(−|v|/v_s)", "falling as 1/(1 + (v/v_s)²)")
+
+
+def described(shape: Shape) -> str:
+    """Return the law of the fall, where it is not the plain one."""
+    return _FALLS[int(shape.get("form", 0.0))]
+
+
 TERM = Term(
     "stribeck-friction",
     "N",
@@ -63,4 +71,5 @@ TERM = Term(
     follows=lambda shape: "path" if shape["presliding"] > 0.0 else "motion",
     needs=("coulomb-friction",),
     starts=starts,
+    described=described,
 )

@@ -140,6 +140,9 @@ class Term:
     """Shapes that are tried first in a campaign; None to spread the parameters."""
     curves: Callable[[Scales], Sequence[Shape]] | None = None
     """Shapes by whose columns measured ones differ from the formula's, the plainest first."""
+    described: Callable[[Shape], str] | None = None
+    """What a shape's choices (parameters that no fit changes) mean in words; "" where nothing
+    needs saying. None: they are told by name."""
     departure: float = 0.0
     """Size of these differences over the coefficient, one standard deviation."""
     trials: tuple[Shape, ...] = ()

@@ -114,7 +114,7 @@ def test_the_model_that_made_records_is_best_on_them_and_pictures_come_in_each_f
     assert ranks == {"ioim-laminar": 1, "ioim-turbulent": 2}
     assert (folder / "figures" / "errors-1.png").read_bytes()[1:4] == b"PNG"
     assert (folder / "figures" / "errors-1.pdf").read_bytes()[:4] == b"%PDF"
-    assert "Errors on" in capsys.readouterr().out
+    assert "Errors: ioim-laminar " in capsys.readouterr().out
 
 
 def test_simulate_has_a_page_beside_its_tables(campaign, tmp_path, monkeypatch):
@@ -142,3 +142,15 @@ def test_what_can_t_be_compared_is_told_in_a_line(arguments, told, tmp_path, mon
     assert (out, len(err.splitlines())) == ("", 1)
     assert told in err
     assert not Path("inerter-out").exists() or not list(Path("inerter-out").iterdir())
+
+
+def test_what_one_answer_alone_has_is_told_as_that_and_not_as_undecided(
+    campaign, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    assert main(["compare", "foim", "ioim-laminar", "--on", str(campaign)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert "Only in foim: fractional derivative." in lines
+    (laminar,) = [line for line in lines if line.startswith("Only in ioim-laminar: ")]
+    assert "inertance" in laminar and "quadratic damping" in laminar
+    assert not any("fractional" in line for line in lines if line.startswith("Can't be told"))

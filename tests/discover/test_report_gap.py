@@ -1,6 +1,9 @@
+from dataclasses import replace
+
 import pytest
 
 from discover.figure_data import GapFigureData
+from discover.plots.gap import effect_shape, gap_by_round
 from discover.report.gap import gap_figures, gap_lines, gap_report
 from discover.words import warning_lines
 from tests.discover.sample_gap import sample_gap_data, sample_gap_document
@@ -25,7 +28,7 @@ def test_page_is_self_contained_and_carries_each_part():
         "Where the baseline misses",
         "The effect's shape",
         "395 to 409",
-        "Transition speed 0.002 m/s",
+        "Transition speed 2 mm/s",
         "direction of motion",
         "inerter gap rig",
     ):
@@ -106,3 +109,22 @@ def test_what_a_later_name_replaced_is_not_said_to_be_missing():
     assert "viscous damping" in missing
     assert "Coulomb" not in missing
     assert any("instead of Coulomb friction" in line for line in said)
+
+
+def drawn_shape(joined):
+    shape = replace(sample_gap_data().shapes[0], joined=joined)
+    return effect_shape(shape, name="shape")
+
+
+def test_an_effect_that_is_no_curve_over_what_it_follows_is_drawn_as_points():
+    # A joined curve is one path; points are as many uses of a mark.
+    joined, scattered = (drawn_shape(j).count("<use ") for j in (True, False))
+    assert scattered - joined >= sample_gap_data().shapes[0].x.size
+
+
+def test_names_of_many_rounds_do_not_run_into_each_other():
+    document = sample_gap_document()
+    few = gap_by_round(document)
+    many = gap_by_round({**document, "rounds": 3 * document["rounds"]})
+    assert "rotate(-28" in many
+    assert "rotate(-28" not in few
