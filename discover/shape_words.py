@@ -16,6 +16,7 @@ _NAMES = {
     "stribeck_velocity": "Stribeck velocity",
 }
 _OF_A_TEST = ("over", "only")
+_BETWEEN_TESTS = ("from_test", *_OF_A_TEST)
 
 
 def shape(term: Mapping[str, Any]) -> str:
@@ -29,6 +30,8 @@ def shape(term: Mapping[str, Any]) -> str:
     'transition speed 2 mm/s'
     >>> shape({"id": "coulomb-friction", "presliding": 2.4e-5, "form": 1.0})
     'presliding over 0.024 mm, an elastic slider'
+    >>> shape({"id": "sensor-gain", "load": 151.5, "load_power": 2.0, "from_test": 3.0})
+    "from test 3, at a force of 152 N, with the force's size to the power 2"
     >>> shape({"id": "thermal-drift", "from_test": 2.0, "over": 7.0})
     'from test 2, over 7 tests'
     >>> shape({"id": "sensor-drift", "over": 1.0, "only": 3.0})
@@ -46,7 +49,8 @@ def shape(term: Mapping[str, Any]) -> str:
         growing = bool(alone) and name == "power" and not term.get("over")
         if value is None or (value == parameter.default and name not in _ALWAYS and not growing):
             continue
-        if (alone and name in _OF_A_TEST) or (described and not parameter.fitted):
+        covered = described and not parameter.fitted and name not in _BETWEEN_TESTS
+        if covered or (alone and name in _OF_A_TEST):
             continue
         ends = term.get(f"{name}_interval")
         text = quantity(value, parameter.unit or _AFTER.get(name, ""), ends, 4)

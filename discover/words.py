@@ -12,18 +12,20 @@ THIN_SPACE = "\u202f"
 _NAMES = {
     "inertia": "inertance",
     "quadratic-damping": "quadratic damping, v|v|",
-    "power-law-damping": "power-law damping, |v|ᵖ",
+    "power-law-damping": "power-law damping, |v|\u2060ᵖ",
     "coulomb-friction": "Coulomb friction, sign v",
     "stribeck-friction": "Stribeck friction",
     "force-offset": "force offset",
     "time-delay": "delay between channels",
 }
 
-_PREFIXED = {"m": ("mm", 1e3), "m/s": ("mm/s", 1e3), "s": ("ms", 1e3)}
-_SMALL = 0.1  # below which a length, a speed or a time is told in thousandths
+_PREFIXED = ("m", "m/s", "s")
+_SMALL = ((1e-5, "µ", 1e6), (0.1, "m", 1e3))  # below which values are told in such parts
 
 COORDINATES = {"dean": "Dean number", "speed": "speed amplitude", "frequency": "frequency"}
 """What bands lie on, in words."""
+COORDINATE_UNITS = {"speed": " m/s", "frequency": " Hz"}
+"""Of its values, with a space before; none of a Dean number."""
 
 
 def term_name(identifier: str) -> str:
@@ -149,7 +151,7 @@ def _end(value: float | None, instead: str, digits: int) -> str:
 def quantity(
     value: float, unit: str, ends: Sequence[float | None] | None = None, digits: int = 3
 ) -> str:
-    """Return an SI value with its unit and its interval, small ones in thousandths.
+    """Return an SI value with its unit and its interval, small ones in thousandths or less.
 
     Parameters
     ----------
@@ -164,14 +166,15 @@ def quantity(
 
     Examples
     --------
-    >>> quantity(0.00226, "m/s", [0.0016, None]), quantity(2.4e-5, "m"), quantity(0.5, "s")
-    ('2.26 mm/s (1.6 to ∞)', '0.024 mm', '0.5 s')
+    >>> quantity(0.00226, "m/s", [0.0016, None]), quantity(8.6e-6, "m"), quantity(0.5, "s")
+    ('2.26 mm/s (1.6 to ∞)', '8.6 µm', '0.5 s')
     >>> quantity(0.01, "1")
     '0.01'
     """
     shown, factor = unit, 1.0
-    if unit in _PREFIXED and 0.0 < abs(value) < _SMALL:
-        shown, factor = _PREFIXED[unit]
+    if unit in _PREFIXED and value:
+        parts = ((p + unit, f) for limit, p, f in _SMALL if abs(value) < limit)
+        shown, factor = next(parts, (unit, 1.0))
     text = significant(factor * value, digits)
     if shown not in ("", "1"):
         text += f" {shown}"
@@ -246,8 +249,7 @@ def coordinate_value(value: float, coordinate: str) -> str:
     >>> coordinate_value(98.02, "dean"), coordinate_value(0.1227, "speed")
     ('98', '0.123 m/s')
     """
-    unit = {"speed": " m/s", "frequency": " Hz"}.get(coordinate, "")
-    return significant(value, 3) + unit
+    return significant(value, 3) + COORDINATE_UNITS.get(coordinate, "")
 
 
 def band_range(band: Mapping[str, Any], coordinate: str) -> str:

@@ -11,6 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import discover
+from discover.compare import comparison_document, side_of_model, side_of_study
+from discover.compare.differences import Difference
+from discover.compare.side import Side, SideBand
 from discover.data_check import result as check_result
 from discover.dean import DeanCheck
 from discover.gap import result as gap_result
@@ -20,7 +23,7 @@ from discover.record_checks import RecordCheck
 from discover.rows import Accuracy, Unexplained
 from discover.simulate import ForceComparison, ModelPrediction
 from discover.study import result as study_result
-from models.constitutive import Band, FittedTerm, SegmentedModel
+from models.constitutive import Band, FittedTerm, SegmentedModel, ioim_laminar
 from models.device import Device, Fluid
 from models.terms import TERMS
 
@@ -56,6 +59,12 @@ _HELD_BY = {
     "simulation": ForceComparison,
     "simulation.models[]": ModelPrediction,
     "simulation.models[].records[]": Accuracy,
+    "comparison.sides[]": Side,
+    "comparison.sides[].bands[]": SideBand,
+    "comparison.sides[].bands[].terms[]": study_result.TermEstimate,
+    "comparison.quantities[]": Difference,
+    "comparison.errors[].models[]": ModelPrediction,
+    "comparison.errors[].models[].records[]": Accuracy,
 }
 """The value that holds what a place in a document says, by document and place."""
 
@@ -137,7 +146,25 @@ _SAID = {
     "simulation.models[].records[].error_percent": "RMSE over the model force's peak.",
     "simulation.models[].records[].relative_error_percent": "100 ||e||/||F||.",
     "simulation.models[].records[].bands": "Bands of the model that were used, from 0.",
+    "comparison.seed": "Of what was run.",
+    "comparison.sides": "The answers, in the order given.",
+    "comparison.sides[].bands[].terms[].parts": "Of friction whose curve is a sum, in words.",
+    "comparison.sides[].campaign": "What it rests on; empty for a model alone.",
+    "comparison.sides[].campaign.title": "As given by the user.",
+    "comparison.sides[].campaign.hash": "SHA-256 over `campaign.toml` and the records' bytes.",
+    "comparison.same_structures": "Every answer has the same structures in as many bands.",
+    "comparison.quantities": "Every number that an answer has, band by band.",
+    "comparison.quantities[].values": "In each answer; null where it lacks the term.",
+    "comparison.quantities[].values[].value": "In `unit`.",
+    "comparison.errors[].models": "Of each answer.",
+    "comparison.findings": "What a reader has to know.",
+    "comparison.errors": "Of every answer on common records, an entry a campaign.",
+    "comparison.errors[].campaign": "Whose records they are.",
+    "comparison.errors[].campaign.title": "As given by the user.",
+    "comparison.errors[].campaign.hash": "SHA-256 over `campaign.toml` and the records' bytes.",
 }
+_LIKE = {"comparison.errors[].": "simulation."}
+"""Places of one document that hold what another's do."""
 
 
 def documents_page() -> str:
@@ -149,6 +176,14 @@ def documents_page() -> str:
         hidden, "fit:inertia,viscous-damping,coulomb-friction",
         effects=["asymmetric-damping", "quadratic-damping"],
     )  # fmt: skip
+    device = segmented.device
+    if device is None:
+        raise ValueError("the segmented campaign has lost its device")
+    laminar = SegmentedModel(
+        (Band(None, None, ioim_laminar(device)),), "speed", "paper", device, "laminar"
+    )
+    sides = [side_of_study("study", study), side_of_model("laminar", laminar)]
+    simulated = discover.simulate_forces(segmented, {s.name: s.model for s in sides}).to_dict()
     shown = {
         "study": (study.to_dict(), "the answer of `inerter discover` and `discover.run_study`"),
         "gap": (gap.to_dict(), "the answer of `inerter gap` and `discover.close_gap`"),
@@ -158,8 +193,10 @@ def documents_page() -> str:
             "the answer of `inerter check` and `discover.check_campaign`",
         ),
         "simulation": (
-            discover.simulate_forces(segmented, {"study": study.model}).to_dict(),
-            "the answer of `inerter simulate` and `discover.simulate_forces`",
+            simulated, "the answer of `inerter simulate` and `discover.simulate_forces`"
+        ),
+        "comparison": (
+            comparison_document(sides, [simulated], seed=0), "the answer of `inerter compare`"
         ),
     }
     lines = [
@@ -195,9 +232,9 @@ def _keys(document: Mapping[str, Any], above: str = "") -> Iterator[str]:
         yield path
         if isinstance(value, Mapping) and key not in ("parameters", "follows"):
             yield from _keys(value, f"{path}.")
-        elif isinstance(value, list) and value and isinstance(value[0], Mapping):
+        elif isinstance(value, list) and (entries := [v for v in value if isinstance(v, Mapping)]):
             merged: dict[str, Any] = {}
-            for entry in value:
+            for entry in entries:
                 for k, v in entry.items():
                     if merged.get(k) in (None, [], {}):
                         merged[k] = v
@@ -208,8 +245,10 @@ def _meaning(name: str, key: str) -> str:
     """Return what a key means: by its own name here, or by the field that it comes from."""
     if key in _COMMON:
         return _cell(_COMMON[key])
-    if f"{name}.{key}" in _SAID:
-        return _cell(_SAID[f"{name}.{key}"])
+    whole = f"{name}.{key}"
+    like = next((whole.replace(a, b, 1) for a, b in _LIKE.items() if whole.startswith(a)), whole)
+    if said := _SAID.get(whole) or _SAID.get(like):
+        return _cell(said)
     place, _, last = f"{name}.{key}".rpartition(".")
     holder = _HELD_BY.get(place)
     said = {} if holder is None else _fields(holder)

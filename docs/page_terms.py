@@ -67,7 +67,7 @@ def _section(term: Term) -> list[str]:
     lines = [f"({term.id})=", f"## {term.id}", "", " ".join(told), ""]
     described = inspect.getdoc(term.column or term.transform)
     if described:
-        lines += ["```text", described, "```", ""]
+        lines += [_paragraphs(described), ""]
     if term.parameters:
         names = ("parameter", "from", "to", "default", "unit", "fitted")
         lines += [f"| {' | '.join(names)} |", "|---" * len(names) + "|"]
@@ -80,6 +80,13 @@ def _section(term: Term) -> list[str]:
         lines.append("")
     picture = f"![Force of {term.id} over displacement and over speed](loops/{term.id}.svg)"
     return [*lines, picture, ""]
+
+
+def _paragraphs(text: str) -> str:
+    """Return a docstring's paragraphs as Markdown; names between backticks stay code."""
+    parts = " ".join(text.replace("\n\n", "\0").split("\n")).replace("\0", "\n\n").split("`")
+    return "`".join(p if i % 2 else p.replace("*", "\\*").replace("<", "\\<")
+                    for i, p in enumerate(parts))  # fmt: skip
 
 
 def _plain(text: str) -> str:

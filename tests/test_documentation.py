@@ -53,6 +53,11 @@ def test_links_of_a_page_lead_to_files_that_are_there(page):
 BUILT_PAGES = [f"{BUILT}{name}.md" for name in ("commands", "terms", "documents")]
 
 
+def test_every_page_stands_in_the_site_s_contents():
+    listed = re.findall(r"^([\w-]+)$", (DOCS / "index.md").read_text(encoding="utf-8"), re.M)
+    assert sorted(p.stem for p in DOCS.glob("*.md") if p.stem != "index") == sorted(listed)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=named)
 def test_verbs_and_options_that_a_page_names_are_the_program_s(page, capsys):
     for language, text in blocks(page):

@@ -8,6 +8,7 @@ from typing import Any
 
 from discover.report.friction_parts import whole_friction
 from discover.study import Study
+from discover.words import listed, short_name
 from models.constitutive import SegmentedModel
 from models.cores import core_of
 
@@ -91,8 +92,8 @@ def side_of_gap(name: str, document: Mapping[str, Any], model: SegmentedModel) -
         (band,) = bands
         terms = tuple(whole_friction(document["mended"]))
         bands = (SideBand(band.lower, band.upper, band.structure, None, terms),)
-    added = [r["effect"] for r in document["rounds"]]
-    headline = f"{document['verdict']}: " + (", ".join(added) + " added" if added else "as it was")
+    added = [short_name(r["effect"]) for r in document["rounds"]]
+    headline = f"{document['verdict']}: " + (f"{listed(added)} added" if added else "as it was")
     campaign = document["campaign"]
     return Side(
         name, "gap", campaign["title"], campaign["hash"], headline, model.coordinate, bands, model

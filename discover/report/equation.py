@@ -109,16 +109,14 @@ def _asymmetric(term: Entry) -> Markup:
 def _stribeck(term: Entry) -> Markup:
     """Return the fall with speed, its number in it, times the friction's curve."""
     speed = significant(float(term["stribeck_velocity"]), 3)
-    ratio = Markup("<mfrac>{}<mn>{}</mn></mfrac>").format(_V, speed)
+    ratio = Markup("<mrow>{}<mo>/</mo><mn>{}</mn></mrow>").format(_V, speed)
     squared = Markup("<msup><mrow><mo>(</mo>{}<mo>)</mo></mrow><mn>2</mn></msup>").format(ratio)
-    size = Markup("<mrow><mo>|</mo>{}<mo>|</mo></mrow>").format(ratio)
     form = int(term.get("form", 0.0))
     if form == 2:
         below = Markup("<mrow><mn>1</mn><mo>+</mo>{}</mrow>").format(squared)
-        fall = Markup("<mfrac><mn>1</mn>{}</mfrac>").format(below)
-    else:
-        power = size if form else squared
-        fall = Markup("<msup><mi>e</mi><mrow><mo>−</mo>{}</mrow></msup>").format(power)
+        return Markup("<mfrac>{}{}</mfrac>").format(_CURVE, below)
+    power = Markup("<mrow><mo>|</mo>{}<mo>|</mo></mrow>").format(ratio) if form else squared
+    fall = Markup("<mi>exp</mi><mo>(</mo><mo form='prefix'>−</mo>{}<mo>)</mo>").format(power)
     return fall + _CURVE
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from discover.shape_words import shape
 from discover.words import (
+    COORDINATE_UNITS,
     band_range,
     coordinate_name,
     coordinate_value,
@@ -51,7 +53,7 @@ def headline(document: Mapping[str, Any]) -> str:
     number = _NUMBERS.get(len(bands), str(len(bands)))
     ends = [i for b in document.get("boundaries", ()) if (i := interval(b.get("interval")))]
     where = f"{number} bands of {coordinate_name(document)}: {listed(parts)}"
-    unit = {"speed": " m/s", "frequency": " Hz"}.get(coordinate, "")
+    unit = COORDINATE_UNITS.get(coordinate, "")
     known = f" (boundary {listed(ends)}{unit})" if ends else ""
     return f"{where}{besides}{known}{_dean_short(document)}{_so_far(document)}"
 
@@ -310,14 +312,15 @@ def next_purpose(test: Mapping[str, Any]) -> str:
 def boundary_text(boundary: Mapping[str, Any], document: Mapping[str, Any]) -> str:
     """Return one boundary in words, in the study's coordinate."""
     coordinate = str(document["coordinate"])
+    unit = COORDINATE_UNITS.get(coordinate, "")
     text = f"{coordinate_name(document)} {coordinate_value(boundary['coordinate'], coordinate)}"
     spread = interval(boundary.get("interval"))
     if spread:
-        text += f" (interval {spread})"
+        text += f" (interval {spread}{unit})"
     bracket = interval(boundary.get("bracket"))
     if bracket:
-        text += f", between the records at {bracket}"
+        text += f", between the records at {bracket}{unit}"
     width = boundary.get("width")
     if width:
-        text += f"; a gradual change, {significant(width, 2)} wide"
+        text += f"; a gradual change, over a factor of {significant(math.exp(width), 2)}"
     return text

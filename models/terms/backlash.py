@@ -43,6 +43,11 @@ def starts(scales: Scales) -> list[Start]:
     ]
 
 
+def described(shape: Shape) -> str:
+    """Return where the play is, where dry friction is beside it."""
+    return "in the fluid, beside dry friction" if shape.get("inside", 0.0) else ""
+
+
 TERM = Term(
     "backlash",
     "1",
@@ -61,4 +66,5 @@ TERM = Term(
     bounds=lambda shape: (0.0, 1.0),
     impacts=lambda shape: True,
     starts=starts,
+    described=described,
 )

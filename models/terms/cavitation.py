@@ -59,6 +59,12 @@ def starts(scales: Scales) -> list[Start]:
     ]
 
 
+def described(shape: Shape) -> str:
+    """Return which way the oil tears, and whether a valve makes up what is lost."""
+    side = "in tension" if shape.get("side", -1.0) >= 0.0 else "in compression"
+    return f"{side}, made up through a valve" if shape.get("refill", 0.0) else side
+
+
 TERM = Term(
     "cavitation",
     "1",
@@ -80,4 +86,5 @@ TERM = Term(
     bounds=lambda shape: (0.0, 1.0),
     impacts=lambda shape: shape["contact"] > 0.0,
     starts=starts,
+    described=described,
 )

@@ -71,6 +71,13 @@ def starts(scales: Scales) -> list[Start]:
     return springs + dissipating + uneven
 
 
+def described(shape: Shape) -> str:
+    """Return at which end the stop is, and whether it is a cushion's."""
+    end = {1.0: "at the extended end", -1.0: "at the compressed end"}.get(shape.get("side", 0.0))
+    kind = "a hydraulic cushion" if shape.get("form", 0.0) else ""
+    return ", ".join(part for part in (end, kind) if part)
+
+
 TERM = Term(
     "end-stop",
     "N/m^{exponent}",
@@ -88,4 +95,5 @@ TERM = Term(
     nonnegative=True,
     mistaken_for=("cubic-stiffness", "stiffness"),
     starts=starts,
+    described=described,
 )

@@ -57,6 +57,15 @@ def starts(scales: Scales) -> list[Start]:
     return [*(Start(parts) for parts in sets), *local, *periodic]
 
 
+def described(shape: Shape) -> str:
+    """Return how friction goes along the stroke."""
+    if not shape.get("width", 0.0):
+        return f"as displacement to the power {shape.get('power', 1.0):g}"
+    return {_STEP: "beyond a place", _WAVE: "periodic along the stroke"}.get(
+        shape.get("form", 0.0), "near a place"
+    )
+
+
 TERM = Term(
     "position-dependent-friction",
     "N/m^{power}",
@@ -72,4 +81,5 @@ TERM = Term(
     mistaken_for=("hysteresis", "coulomb-friction"),
     needs=("coulomb-friction",),
     starts=starts,
+    described=described,
 )

@@ -89,6 +89,19 @@ def _bounds(shape: Shape) -> tuple[float, float]:
     return -limit, limit
 
 
+def described(shape: Shape) -> str:
+    """Return in which part of the force the gain is there."""
+    if power := shape.get("load_power", 0.0):
+        load = shape.get("load", 0.0) or 1.0
+        return f"at a force of {load:.3g} N, with the force's size to the power {power:g}"
+    side = shape.get("side", 1.0)
+    if shape.get("one_way", 0.0):
+        return "in tension only" if side > 0.0 else "in compression only"
+    if threshold := shape.get("threshold", 0.0):
+        return f"where the peak force is {'above' if side >= 0.0 else 'below'} {threshold:.3g} N"
+    return "of the samples, after recording" if shape.get("digital", 0.0) else ""
+
+
 TERM = Term(
     "sensor-gain",
     "1",
@@ -113,4 +126,5 @@ TERM = Term(
     bounds=_bounds,
     starts=starts,
     of_channel=True,
+    described=described,
 )

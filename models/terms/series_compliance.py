@@ -52,6 +52,13 @@ def starts(scales: Scales) -> list[Start]:
     return plain + loaded
 
 
+def described(shape: Shape) -> str:
+    """Return whose spring it is and which way it changes under load."""
+    where = "in the fluid, beside dry friction" if shape.get("inside", 0.0) else ""
+    side = {1.0: "under tension only", -1.0: "under compression only"}.get(shape.get("side", 0.0))
+    return ", ".join(part for part in (where, side) if part)
+
+
 TERM = Term(
     "series-compliance",
     "m/N",
@@ -68,4 +75,5 @@ TERM = Term(
     nonnegative=True,
     mistaken_for=("inertia", "time-delay", "fractional-derivative"),
     starts=starts,
+    described=described,
 )

@@ -73,6 +73,17 @@ def starts(scales: Scales) -> list[Start]:
     return sampled + filtered + ([Start(own, probe)] if own else [])
 
 
+def described(shape: Shape) -> str:
+    """Return what makes the delay, where it is not a channel that samples later."""
+    if order := shape.get("filter_order", 0.0):
+        digital = ", of the samples" if shape.get("digital", 0.0) else ""
+        return f"by a low-pass of order {order:g}{digital}"
+    if degree := shape.get("resampled", 0.0):
+        return "resampled by lines" if degree == 1.0 else "resampled by a spline"
+    sampling = shape.get("sampling", 0.0)
+    return f"as a number of samples, at {sampling:.4g} Hz" if sampling else ""
+
+
 TERM = Term(
     "time-delay",
     "s",
@@ -90,4 +101,5 @@ TERM = Term(
     bounds=lambda shape: (0.0 if shape["filter_order"] > 0.0 else -np.inf, np.inf),
     starts=starts,
     of_channel=True,
+    described=described,
 )
