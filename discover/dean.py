@@ -36,7 +36,7 @@ class DeanCheck:
     criterion: float
     """Critical Dean number in that convention."""
     verdict: str
-    """One of `VERDICTS`."""
+    """"consistent", "contradicted", "undetermined", "no-boundary" or "no-geometry"."""
     boundary_dean: float | None
     """At the boundary, in that convention."""
     interval: tuple[float, float] | None

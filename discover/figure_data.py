@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from discover.residual_data import Response
+from discover.words import counted
 from models.checks import Array
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ShownRecord:
     """One record as pictures show it: measured, beside what models say."""
 
@@ -23,7 +24,7 @@ class ShownRecord:
     amplitude: float | None
     """m, displacement amplitude; None for a record that is no sine test."""
     time: Array
-    """(n,) s, two cycles of a sine test, else three stretches of a few turns; at most 600."""
+    """(n,) s, two cycles of a sine test, else up to three stretches of a few turns; at most 600."""
     displacement: Array
     """(n,) m."""
     velocity: Array
@@ -34,6 +35,10 @@ class ShownRecord:
     """100 ||noise||/||F||."""
     responses: tuple[Response, ...] = ()
     """One for each of the predictions, in their order; empty where not drawn."""
+
+    def __repr__(self) -> str:
+        """Return the record's name and how much of it is shown: its curves would fill pages."""
+        return f"<{type(self).__name__} of {self.file!r}: {counted(self.force.size, 'sample')}>"
 
     @property
     def predictions(self) -> tuple[tuple[str, Array], ...]:
@@ -46,7 +51,7 @@ class ShownRecord:
         return ()
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class RecordCurves(ShownRecord):
     """One record of a study: where it stands in the plan, and measured beside model."""
 
@@ -76,7 +81,7 @@ class RecordCurves(ShownRecord):
         return (self.relative_error_percent,)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class SimulatedRecord(ShownRecord):
     """One record of a simulation, beside every model's force."""
 
@@ -124,7 +129,7 @@ class StructureProbability:
     """In [0, 1]; over a band's structures they add up to one."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StudyFigureData:
     """Everything that the study's pictures need and its document does not carry."""
 
@@ -138,6 +143,10 @@ class StudyFigureData:
     """Dean number per m/s of piston speed, the paper's convention; None without a device."""
     dean_per_speed_standard: float | None = None
     """The same by the standard convention."""
+
+    def __repr__(self) -> str:
+        """Return how many records there are curves of."""
+        return f"<StudyFigureData of {counted(len(self.records), 'record')}>"
 
 
 @dataclass(frozen=True)
@@ -172,7 +181,7 @@ class PlanFigureData:
     """The same by the standard convention."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class GapCurves(ShownRecord):
     """One record of a gap search: measured, and the model before and after it was mended."""
 
@@ -237,7 +246,7 @@ class MisfitCell:
     """Mean misfit in the cell, signed, over the records' rms misfit."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class GapFigureData:
     """Everything that a gap search's pictures need and its document does not carry."""
 
@@ -247,3 +256,7 @@ class GapFigureData:
     """One for each effect that has a shape to show."""
     surface: tuple[MisfitCell, ...] = ()
     """The baseline's misfit over the cycle; empty where not drawn."""
+
+    def __repr__(self) -> str:
+        """Return how many records there are curves of."""
+        return f"<GapFigureData of {counted(len(self.records), 'record')}>"

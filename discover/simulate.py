@@ -23,7 +23,7 @@ from discover.rows import (
     noise_percent,
     pooled_percent,
 )
-from discover.words import model_names
+from discover.words import counted, model_names
 from models.checks import Array, InputError, shown
 from models.constitutive import ForceModel, SegmentedModel
 from models.flow import dean_per_speed
@@ -108,8 +108,8 @@ class ForceComparison:
         for model in self.ranked:
             error = model.relative_percent()
             told.append(f"{model.name} " + ("no force" if error is None else f"{error:.3g} %"))
-        count = len(self.models[0].records)
-        return f"<Forces on {count} records of {shown(self.title)}, error: {', '.join(told)}>"
+        count = counted(len(self.models[0].records), "record")
+        return f"<Forces on {count} of {shown(self.title)}, error: {', '.join(told)}>"
 
     def to_frame(self) -> pandas.DataFrame:
         """Return the errors as a table, a row for every model and record.

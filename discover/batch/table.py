@@ -11,7 +11,7 @@ import pyarrow.csv
 import pyarrow.parquet
 
 from discover.batch.answer import Answer
-from discover.report.friction_parts import whole_friction
+from discover.friction_parts import whole_friction
 from discover.shape_words import shape
 
 _TEXT, _NUMBER, _COUNT, _TRUTH = pa.string(), pa.float64(), pa.int64(), pa.bool_()

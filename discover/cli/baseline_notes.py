@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from discover.cli.named_model import left_out
+from discover.named_model import left_out
 from models.constitutive import ForceModel, SegmentedModel
 
 if TYPE_CHECKING:

@@ -109,8 +109,8 @@ def _side(
     name: str, answer: str, device: Any, *, seed: int, jobs: int
 ) -> tuple[Side, Campaign | None]:
     """Return an answer from what was typed, and the campaign where it was studied for this."""
-    from discover.cli.named_model import named_model
     from discover.compare import side_of_gap, side_of_model, side_of_study
+    from discover.named_model import named_model
     from discover.readers import read_campaign
     from discover.study import StudyOptions, load_study, run_study
 

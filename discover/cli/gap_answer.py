@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from discover.cli.baseline_notes import baseline_notes
-from discover.cli.named_model import named_model, paper_values
 from discover.gap import FRACTIONAL, close_gap
+from discover.named_model import named_model, paper_values
 
 if TYPE_CHECKING:
     from discover.gap import Gap

@@ -47,8 +47,8 @@ def simulate(
     folder = result_folder("simulate", campaign, out)
 
     # Loaded here: --help and complaints about options need no numerics.
-    from discover.cli.named_model import named_model
     from discover.cli.own_effects import own_effects
+    from discover.named_model import named_model
     from discover.readers import read_campaign
     from discover.report.simulation import simulation_files, simulation_lines
     from discover.simulate import simulate_forces

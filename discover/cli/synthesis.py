@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.cli.named_model import named_model
+from discover.named_model import named_model
 from discover.readers.toml_text import quoted
 from models.checks import Array
 from models.device import PRESETS, Device

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from discover.report.friction_parts import whole_friction
+from discover.friction_parts import whole_friction
 from discover.study import Study
 from discover.words import listed, short_name
 from models.constitutive import SegmentedModel

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +10,7 @@ from discover.figure_data import PlanFigureData
 from discover.header import document_header
 from discover.record_checks import RecordCheck
 from discover.records import Finding
+from discover.words import counted
 
 
 @dataclass(frozen=True)
@@ -138,7 +140,7 @@ class AddedTest:
         }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class DataCheck:
     """The answer of a check."""
 
@@ -162,6 +164,13 @@ class DataCheck:
     """What would help; None where every pair is separable or no other test is within limits."""
     figure_data: PlanFigureData
     """What the pictures need besides."""
+
+    def __repr__(self) -> str:
+        """Return the campaign's title and whether it passed."""
+        levels = Counter(f.level for f in self.findings)
+        found = [counted(n, level) for level, n in levels.items()]
+        told = ", ".join(["passed" if self.passed else "failed", *found])
+        return f"<DataCheck of {self.title!r}: {counted(len(self.records), 'record')}, {told}>"
 
     @property
     def passed(self) -> bool:

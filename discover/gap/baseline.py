@@ -173,7 +173,7 @@ def _check_model(given: object) -> None:
         return
     near = f": `{type(given).__name__.lower()}.model` is one" if hasattr(given, "model") else ""
     raise InputError(
-        "model", expected="'fit:TERM,...', 'foim', 'sfoim' or a model" + near,
+        "model", expected="'fit:TERM,...', a model's name or file, or a model" + near,
         found=type(given).__name__,
     )  # fmt: skip
 

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 from discover.answer_html import answer_html
 from discover.document import json_text
 from discover.figure_data import GapFigureData
+from discover.friction_parts import whole_friction
 from discover.gap.verdict import verdict_lines
 from discover.gap.where import Place
 from discover.header import document_header
 from discover.records import Finding
 from discover.rows import Unexplained
-from discover.words import error_lines, interval, significant, term_name
+from discover.words import error_lines, interval, raised, significant, term_name
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
 
 if TYPE_CHECKING:
@@ -203,10 +204,10 @@ class Gap:
         """Return the answer as a notebook shows it."""
         rows = [
             [
-                term_name(m.fitted.id), significant(m.fitted.coefficient),
-                interval(m.interval, 4), m.fitted.unit,
+                term_name(m["id"]), significant(m["coefficient"]), interval(m.get("interval"), 4),
+                raised(m["unit"]),
             ]
-            for m in self.mended
+            for m in whole_friction([m.to_dict() for m in self.mended])
         ]
         header = ("term of the mended model", "coefficient", "95 % interval", "unit")
         return answer_html(self.title, self._lines(), header, rows)

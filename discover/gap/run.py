@@ -17,6 +17,7 @@ from discover.gap.search import Round, Search, Stage, search
 from discover.gap.verdict import CLOSED
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import observe_all
+from discover.named_model import FROM_GEOMETRY, named_model
 from discover.posterior.grow import Step
 from discover.posterior.model import Number
 from discover.posterior.spread import Spread, spread_of
@@ -53,7 +54,8 @@ def close_gap(
         Records; those held out are only predicted. Where none is marked, each is left out in
         turn.
     model : str, ForceModel or SegmentedModel
-        ``fit:TERM,TERM,...``, ``foim``, ``sfoim`` (coefficients fitted first) or a model.
+        ``fit:TERM,TERM,...``, ``foim``, ``sfoim`` (coefficients fitted first), ``ioim-laminar`` or
+        ``ioim-turbulent`` (from the campaign's device), the path of a ``model.json``, or a model.
     fixed : bool
         Hold the model's coefficients instead of refitting them with each effect.
     effects : sequence of str, optional
@@ -74,7 +76,7 @@ def close_gap(
     Raises
     ------
     InputError
-        Where no record may be fitted, or for an unknown effect.
+        Where no record may be fitted, for an unknown effect, or a name that needs a device.
 
     Examples
     --------
@@ -89,6 +91,8 @@ def close_gap(
             "records", expected="at least one that is not held out", found="none",
             where=campaign.source,
         )
+    if isinstance(model, str) and (model in FROM_GEOMETRY or model.endswith(".json")):
+        model = named_model(model, campaign.device, where="model")
     known = tuple(sorted(TERMS))
     chosen = known if effects is None else tuple(effects)
     for name in chosen:

@@ -13,8 +13,8 @@ import jinja2
 from markupsafe import Markup, escape
 
 from discover import words
+from discover.friction_parts import whole_friction
 from discover.report.equation import equation, symbols
-from discover.report.friction_parts import whole_friction
 from discover.shape_words import shape
 from discover.study.verdict import not_ruled_out
 

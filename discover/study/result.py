@@ -12,13 +12,14 @@ from discover.answer_html import answer_html
 from discover.dean import DeanCheck
 from discover.document import json_text
 from discover.figure_data import StudyFigureData
+from discover.friction_parts import whole_friction
 from discover.header import document_header
 from discover.next_test import NextTest
 from discover.records import Campaign, Finding, Record, checked_campaign
 from discover.rows import Unexplained
 from discover.simulate import ForceComparison, simulate_forces
 from discover.study.verdict import headline, verdict_lines
-from discover.words import error_lines, interval, significant, term_name
+from discover.words import error_lines, interval, raised, significant, term_name
 from models.checks import InputError
 from models.constitutive import FittedTerm, SegmentedModel
 
@@ -274,11 +275,11 @@ class Study:
         """Return the answer as a notebook shows it."""
         rows = [
             [
-                str(number), band.structure, term_name(t.fitted.id),
-                significant(t.fitted.coefficient), interval(t.interval, 4), t.fitted.unit,
+                str(number), band.structure, term_name(t["id"]),
+                significant(t["coefficient"]), interval(t.get("interval"), 4), raised(t["unit"]),
             ]
             for number, band in enumerate(self.bands, start=1)
-            for t in band.terms
+            for t in whole_friction([t.to_dict() for t in band.terms])
         ]
         header = ("band", "structure", "term", "coefficient", "95 % interval", "unit")
         return answer_html(self.title, self._lines(), header, rows) + self._map()

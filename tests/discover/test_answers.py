@@ -1,6 +1,7 @@
 """What a notebook and a script see of an answer."""
 
 import json
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
@@ -9,7 +10,7 @@ import discover
 from discover.gap import close_gap
 from discover.study import run_study
 from models.checks import InputError
-from tests.discover.exact import campaign, integer
+from tests.discover.exact import DEVICE_12, campaign, integer
 
 
 @pytest.fixture(scope="module")
@@ -146,6 +147,28 @@ def test_a_study_in_place_of_its_model_is_told_from_it(study, measured):
 
 
 def test_what_is_printed_fits_on_a_screen(study, gap, measured):
-    for value in (study, gap, measured, measured.records[0], study.plot, study.predict(measured)):
+    check = discover.check_campaign(measured)
+    for value in (
+        study, gap, measured, measured.records[0], study.plot, study.predict(measured), check,
+        study.figure_data, study.figure_data.records[0], gap.figure_data,
+    ):  # fmt: skip
         assert len(repr(value)) < 400
         assert "array(" not in repr(value)
+
+
+def test_a_model_is_taken_by_name_or_file_as_the_command_takes_it(study, measured, tmp_path):
+    path = tmp_path / "model.json"
+    path.write_text(json.dumps(study.model_dict()))
+    known = replace(measured, device=DEVICE_12)
+    effects = ["force-offset"]
+    (inertia, *_) = discover.close_gap(known, "ioim-laminar", effects=effects, fixed=True).baseline
+    assert inertia.coefficient == pytest.approx(370.38, rel=1e-3)
+    again = discover.close_gap(measured, str(path), effects=effects)
+    assert again.verdict == "agrees"
+    with pytest.raises(InputError, match="ioim-laminar must be used with a device"):
+        discover.close_gap(replace(measured, device=None), "ioim-laminar", effects=effects)
+
+
+def test_friction_of_several_curves_is_one_row_in_a_notebook(study):
+    curves = [t for t in study.bands[0].terms if t.fitted.id == "coulomb-friction"]
+    assert study._repr_html_().count("<td>Coulomb friction, sign v</td>") == min(len(curves), 1)

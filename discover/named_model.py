@@ -17,7 +17,10 @@ from models.constitutive import (
 )
 from models.device import Device
 
-NAMES = ("ioim-laminar", "ioim-turbulent", "foim", "sfoim")
+FROM_GEOMETRY = ("ioim-laminar", "ioim-turbulent")
+"""Models whose coefficients follow from a device's geometry."""
+NAMES = (*FROM_GEOMETRY, "foim", "sfoim")
+"""All models that have a name."""
 
 # (b0, order) as the paper identified them: M1 (0.5 Hz), M2 (12 Hz) and M3 (3 Hz).
 _ABOVE = {"device-12": (0.57, 1.89), "device-10": (0.087, 1.98)}
@@ -96,7 +99,7 @@ def left_out(name: str, device: Device | None) -> tuple[str, ...]:
     >>> left_out("ioim-laminar", Device.preset("device-12"))
     ()
     """
-    if device is None or name not in ("ioim-laminar", "ioim-turbulent"):
+    if device is None or name not in FROM_GEOMETRY:
         return ()
     notes = []
     if device.coulomb_friction is None:

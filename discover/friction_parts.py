@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -9,11 +10,14 @@ from discover.shape_words import shape
 from discover.words import listed, significant
 from models.cores import FRICTION
 
+_SAME = 1e-3  # of relative intervals
+
 
 def whole_friction(terms: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return terms with friction's parts made one, whose ``parts`` say in words what they are.
 
-    The parts share one size, so the ends of their intervals add up.
+    Where the parts share one size, whose interval scales them all, the ends of their intervals add
+    up; where each has its own, the whole's interval is not told by theirs and is left out.
 
     Parameters
     ----------
@@ -42,8 +46,20 @@ def whole_friction(terms: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
         ),
     }
     ends = [p.get("interval") for p in parts]
-    if all(ends):
+    if all(ends) and _one_size(parts):
         whole["interval"] = [sum(e[i] for e in ends if e) for i in (0, 1)]
     first = list(terms).index(parts[0])
     rest = [dict(t) for t in terms if t["id"] != FRICTION]
     return [*rest[:first], whole, *rest[first:]]
+
+
+def _one_size(parts: Sequence[Mapping[str, Any]]) -> bool:
+    """Tell whether one number scales all parts: their relative intervals are the same."""
+    relative = [
+        [end / p["coefficient"] for end in p["interval"]] for p in parts if p["coefficient"]
+    ]
+    return len(relative) == len(parts) and all(
+        math.isclose(a, b, rel_tol=_SAME)
+        for r in relative[1:]
+        for a, b in zip(r, relative[0], strict=True)
+    )
