@@ -204,6 +204,13 @@ class Campaign:
     """Records of one device: of a folder with its ``campaign.toml``, or from memory.
 
     `discover.read_campaign` reads one, `from_frames` makes one.
+
+    Examples
+    --------
+    >>> time = np.arange(400) / 100.0
+    >>> table = {"time": time, "displacement": np.sin(6.0 * time), "force": np.cos(6.0 * time)}
+    >>> Campaign.from_frames({"1 Hz": table}, units={"displacement": "mm", "force": "kN"})
+    <Campaign 'records in memory': 1 record, 1 warning>
     """
 
     title: str

@@ -212,10 +212,24 @@ def simulate_forces(
     jobs : int
         Records that are read at a time.
 
+    Returns
+    -------
+    ForceComparison
+        ``to_frame()`` has errors in percent, ``forces()`` the samples (N,) in N.
+
     Raises
     ------
     InputError
         Without models, or for a segmented model whose coordinate the campaign can't give.
+
+    Examples
+    --------
+    >>> import discover
+    >>> from models.constitutive import ioim_laminar
+    >>> campaign = discover.read_campaign("data/hidden-effect")
+    >>> found = simulate_forces(campaign, {"laminar": ioim_laminar(campaign.device)})
+    >>> found.to_frame().shape
+    (15, 6)
     """
     if not models:
         raise InputError("models", expected="at least one", found="none")

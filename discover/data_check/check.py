@@ -35,11 +35,19 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
     Returns
     -------
     DataCheck
+        Its ``to_dict()`` is ``check.json``: SI, noise in percent of the force.
 
     Raises
     ------
     InputError
         Where a record can't be used.
+
+    Examples
+    --------
+    >>> import discover
+    >>> check = discover.check_campaign(discover.read_campaign("data/hidden-effect"))
+    >>> check.passed, [pair.structures for pair in check.inseparable]
+    (True, [])
     """
     campaign = checked_campaign(campaign)
     observations = observe_all(campaign.records, jobs)

@@ -18,7 +18,13 @@ PLAIN = (
 
 @dataclass(frozen=True)
 class Column:
-    """One fixed column: a term with its shape."""
+    """One fixed column: a term with its shape.
+
+    Examples
+    --------
+    >>> Column("power-law-damping", (("exponent", 1.75),)).shape
+    (('exponent', 1.75),)
+    """
 
     id: str
     """The term."""

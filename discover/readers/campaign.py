@@ -56,6 +56,14 @@ def read_campaign(path: str | Path) -> Campaign:
     InputError
         Where anything can't be worked on: one line with file and place, what was expected and
         what was found.
+
+    Examples
+    --------
+    >>> campaign = read_campaign("data/segmented")
+    >>> campaign
+    <Campaign 'A segmented inerter, sine tests (simulated)': 24 records (3 held out) of ...>
+    >>> campaign.records[0].force.shape
+    (5000,)
     """
     given = Path(path)
     folder = given.parent if given.name == CAMPAIGN_FILE and not given.is_dir() else given

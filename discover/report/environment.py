@@ -44,6 +44,8 @@ def prose(text: str) -> Markup:
     'run <code>inerter gap &lt;x&gt;</code>'
     >>> str(prose("5 % of it grows as frequency^(0.4 ± 0.1)")).replace(words.THIN_SPACE, "_")
     '5_% of it grows as frequency<sup>0.4 ± 0.1</sup>'
+    >>> str(prose("D^0.6 x and N s^2/m^2"))
+    'D<sup>0.6</sup> x and N s<sup>2</sup>/m<sup>2</sup>'
     >>> str(prose("k from -1.5 to -0.9, by `--column force=-1`"))
     'k from −1.5 to −0.9, by <code>--column force=-1</code>'
     """
@@ -57,7 +59,7 @@ def prose(text: str) -> Markup:
 def _typeset(text: str) -> str:
     """Return escaped text with minus signs before numbers and raised powers."""
     signed = re.sub(r"(?<![\w.)^-])-(?=\d)", "−", text)
-    return re.sub(r"\^(?:\(([^()]+)\)|(\w)\b)", r"<sup>\1\2</sup>", signed)
+    return re.sub(r"\^(?:\(([^()]+)\)|(-?\d+(?:\.\d+)?|\w)\b)", r"<sup>\1\2</sup>", signed)
 
 
 def grouped(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -7,7 +7,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class StudyOptions:
-    """Choices of a study; the defaults leave everything to the data."""
+    """Choices of a study; the defaults leave everything to the data.
+
+    Examples
+    --------
+    >>> StudyOptions(terms=("inertia", "viscous-damping"), bands=1).coordinate is None
+    True
+    """
 
     terms: tuple[str, ...] | None = None
     """Only these terms, all kept; None for the free search."""

@@ -47,11 +47,21 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
     Returns
     -------
     Study
+        Coefficients are SI, in each term's unit. Its ``to_dict()`` is ``study.json``.
 
     Raises
     ------
     InputError
         Where a record can't be used, or none may be fitted.
+
+    Examples
+    --------
+    >>> import discover
+    >>> campaign = discover.read_campaign("data/hidden-effect")
+    >>> options = discover.StudyOptions(terms=("inertia", "viscous-damping", "coulomb-friction"))
+    >>> study = discover.run_study(campaign, options)
+    >>> [band.structure for band in study.bands]
+    ['IOIM-linear']
     """
     chosen = options or StudyOptions()
     with threadpool_limits(1):  # its matrices are small: more threads take longer

@@ -47,6 +47,12 @@ def load_study(path: str | Path) -> Study:
     ------
     InputError
         Where there is no such file, or it holds no study.
+
+    Examples
+    --------
+    >>> load_study("no-such-folder/study.json")
+    Traceback (most recent call last):
+    models.checks.InputError: no-such-folder/study.json: file must be readable, got No such file...
     """
     file = Path(path)
     file = file / "study.json" if file.is_dir() else file
