@@ -325,7 +325,8 @@ def _doubts(guesses: Sequence[TableGuess], answers: Answers) -> tuple[Doubt, ...
                 choices = (guess.header, *guess.others)
                 doubt = Doubt(quantity, "columns", guess.header, choices, guess.why)
                 doubts.setdefault((quantity, "columns"), doubt)
-            if not guess.unit_stated and quantity not in answers.units:
+            known = guess.unit_stated or guess.unit_named or quantity in answers.units
+            if not known:
                 kinds = {"time": ("s", "ms"), "displacement": ("m", "mm"), "force": ("N", "kN")}
                 choices = (guess.unit, *(u for u in kinds.get(quantity, ()) if u != guess.unit))
                 why = "no file states it; taken by the size of the values"

@@ -40,6 +40,8 @@ class Guess:
     """Whether the file states the unit."""
     others: tuple[str, ...] = ()
     """Headers that are as likely."""
+    unit_named: bool = False
+    """Whether its header ends in the unit, as ``disp_mm``: no statement, but no guess at values."""
 
 
 @dataclass(frozen=True)
@@ -138,15 +140,23 @@ def _guess(
         reasons.append("others are as likely")
     unit = _stated_unit(source, index)
     stated = unit is not None and _fits(unit, quantity)
+    named = None if stated else _named_unit(header, quantity)
     return Guess(
         quantity,
         header,
         sure,
         " and ".join(reasons),
-        unit if stated and unit is not None else _guessed_unit(source, index, quantity),
+        unit if stated and unit is not None else named or _guessed_unit(source, index, quantity),
         stated,
         others,
+        unit_named=named is not None,
     )
+
+
+def _named_unit(header: str, quantity: str) -> str | None:
+    """Return the unit that a header ends in after an underscore, or None."""
+    name, _, last = header.strip().rpartition("_")
+    return last if name and last and _fits(last, quantity) else None
 
 
 def _values(source: Source, index: int) -> Array | None:
@@ -237,7 +247,7 @@ def listed(table: TableGuess) -> Iterator[str]:
     ["force is column 'F' (likely: its letter is used for it), in N (guessed)"]
     """
     for guess in table.columns.values():
-        stated = "" if guess.unit_stated else " (guessed)"
+        stated = "" if guess.unit_stated else " (by its name)" if guess.unit_named else " (guessed)"
         yield (
             f"{guess.quantity} is column {guess.header!r} ({guess.sure}: {guess.why}), in"
             f" {guess.unit}{stated}"

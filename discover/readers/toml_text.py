@@ -40,7 +40,8 @@ def campaign_text(
         lines.append("")
     if units:
         lines.append("[units]")
-        lines += [f"{q} = {quoted(u)}  # no file states it" for q, u in units.items()]
+        why = "by the header's end, or by the values"
+        lines += [f"{q} = {quoted(u)}  # {why}" for q, u in units.items()]
         lines.append("")
     for entry, _ in tests:
         lines += [*_entry_lines(entry), ""]

@@ -164,7 +164,8 @@ def _signs(records: tuple[Record, ...]) -> list[Finding]:
             return [Finding("warning", text)]
         text = (
             "the work over closed loops is negative throughout: the force column has the wrong"
-            " sign for the displacement's direction; multiply the force (or the displacement) by -1"
+            " sign for the displacement's direction; multiply it by -1, as `force = \"-1 N\"` in"
+            " [units] of campaign.toml does"
         )
         return [Finding("error", text)]
     text = (

@@ -92,12 +92,16 @@ def structure_name(band: Mapping[str, Any]) -> str:
     ...     {"structure": "IOIM-linear", "probability": 0.4}]}
     >>> structure_name(open_band)
     'undetermined: FOIM or IOIM-linear'
+    >>> structure_name({"structure": "other", "probability": 0.9, "terms": []})
+    'none of the structures'
     """
     name = str(band["structure"])
     sure = band.get("probability")
     if sure is not None and sure < SURE:
         names = [str(e["structure"]) for e in band.get("equivalents", ())]
         return f"undetermined: {listed(names or [name], last='or')}"
+    if name == OTHER and not band["terms"]:
+        return "none of the structures"
     if name == OTHER:
         return f"other ({listed(short_name(str(t['id'])) for t in band['terms'])})"
     orders = [t["order"] for t in band["terms"] if t.get("order") is not None]

@@ -120,6 +120,24 @@ def test_what_no_file_states_is_told_and_can_be_answered(
     assert found.device is not None
 
 
+def test_a_unit_at_the_end_of_a_name_is_taken(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    x, force = _test(2.0)
+    table = np.column_stack([1e3 * TIME, 1e3 * x, 1e-3 * force])
+    header = "t_ms,disp_mm,force_kN"
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    assert main(["init", "."]) == 0
+    out = capsys.readouterr().out
+    assert "force is column 'force_kN'" in out
+    assert "in kN (by its name)" in out
+    assert "Unsure" not in out
+    record = read_campaign(here).records[0]
+    np.testing.assert_allclose(record.force, force, rtol=1e-6, atol=1e-5)
+    np.testing.assert_allclose(record.displacement, x, atol=1e-9)
+    np.testing.assert_allclose(record.step, TIME[1] - TIME[0], rtol=1e-6)
+
+
 def test_columns_without_names_are_told_by_what_they_do(
     here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -209,3 +209,12 @@ def test_bands_of_one_structure_are_not_told_from_themselves():
     assert next_purpose(same) == "narrows the boundary between the bands of FOIM"
     assert next_purpose({"separates": ["FOIM", "other"]}) == "tells FOIM from other"
     assert next_purpose({}) == ""
+
+
+def test_a_band_without_a_term_is_named_in_words():
+    document = sample_document()
+    (band, *_) = document["bands"]
+    nothing = {"structure": "other", "terms": [], "extras": [], "friction": None}
+    document["bands"] = [band | nothing]
+    document["boundaries"] = []
+    assert headline(document).startswith("none of the structures in all ")
