@@ -115,6 +115,17 @@ def remainder_text(remainder: Mapping[str, Any]) -> str:
     return f"{percent(remainder['value'])} ({significant(low, 3)} to {percent(high)})"
 
 
+def left_over(amount: str, *, several: bool) -> str:
+    """Return what no term explains as a sentence says it: over several records, each alike.
+
+    Examples
+    --------
+    >>> left_over("0.3 %", several=True)
+    'of the force, beyond noise, 0.3 %; every record counts alike'
+    """
+    return f"of the force, beyond noise, {amount}" + "; every record counts alike" * several
+
+
 def probability(value: float | None) -> str:
     """Return a probability in percent that never rounds to a certainty it is not.
 

@@ -13,6 +13,7 @@ from discover.gap.verdict import CLOSED
 from discover.motion_fit import Observation
 from discover.posterior.local import judged
 from discover.records import Finding
+from discover.words import capitalize_first, short_name
 from models.terms.between_tests import ONLY
 
 _WORSE = 1.02  # of a gap that was not fitted, from which a round is said to raise it
@@ -67,15 +68,17 @@ def findings_of(
         result.append(
             Finding(
                 "warning",
-                f"{found.rejected} would make the fitted records more probable but predicts those"
+                f"{_named(found.rejected)} "
+                "would make the fitted records more probable but predicts those"
                 " that were not fitted worse, and is not added.",
             )
         )
     for entry in found.rounds:
         for name in entry.dropped:
             result.append(
-                Finding("note", f"{name}, named in an earlier round, was made superfluous by"
-                        f" {entry.effect} and dropped.")
+                Finding("note", f"{_named(name)},"
+                        " named in an earlier round, was made superfluous by"
+                        f" {short_name(entry.effect)} and dropped.")
             )
     result += _doubts(rounds)
     result += _noisy(found.final)
@@ -102,6 +105,11 @@ def findings_of(
     return tuple(result)
 
 
+def _named(identifier: str) -> str:
+    """Return a term's name as a sentence begins with it."""
+    return capitalize_first(short_name(identifier))
+
+
 def _wrong_signs(baseline: Baseline, at: Stage) -> list[Finding]:
     """Return which of the model's coefficients the records would have below zero."""
     space = at.assessed.space
@@ -122,7 +130,8 @@ def _wrong_signs(baseline: Baseline, at: Stage) -> list[Finding]:
             result.append(
                 Finding(
                     "warning",
-                    f"{fitted.id} would come out as {solved.mean[i]:.3g} {fitted.unit}, which it"
+                    f"{_named(fitted.id)} "
+                    f"would come out as {solved.mean[i]:.3g} {fitted.unit}, which it"
                     f" can't be, and is held at its limit: {why}.",
                 )
             )
@@ -142,7 +151,8 @@ def _doubts(rounds: Sequence[NamedEffect]) -> list[Finding]:
             result.append(
                 Finding(
                     "warning",
-                    f"{entry.effect} is needed, but its coefficient is not told from zero: terms"
+                    f"{_named(entry.effect)} "
+                    "is needed, but its coefficient is not told from zero: terms"
                     " beside it, or its own shape, make up for another one.",
                 )
             )
@@ -150,7 +160,8 @@ def _doubts(rounds: Sequence[NamedEffect]) -> list[Finding]:
             result.append(
                 Finding(
                     "note",
-                    f"{entry.effect} explains {entry.share_percent:.0f} % of the misfit, but its"
+                    f"{_named(entry.effect)} "
+                    f"explains {entry.share_percent:.0f} % of the misfit, but its"
                     " formula leaves more than noise: it is what helps most, not the whole.",
                 )
             )
@@ -165,7 +176,8 @@ def _raised(entry: NamedEffect) -> str | None:
         others = f"from {before:.3g} % to {after:.3g} %"
     if entry.gap[1] > _WORSE * entry.gap[0]:
         return (
-            f"{entry.effect} lowers the gap of records that count alike from {entry.alike[0]:.3g} %"
+            f"{_named(entry.effect)} "
+            f"lowers the gap of records that count alike from {entry.alike[0]:.3g} %"
             f" to {entry.alike[1]:.3g} %, but raises the pooled one from {entry.gap[0]:.3g} % to"
             f" {entry.gap[1]:.3g} %{f' (of records not fitted {others})' if others else ''}:"
             " records of little force gain what those of much lose, as where more than one effect"
@@ -173,7 +185,8 @@ def _raised(entry: NamedEffect) -> str | None:
         )
     if others:
         return (
-            f"{entry.effect} lowers the fitted records' misfit in terms of their noise, but raises"
+            f"{_named(entry.effect)} "
+            "lowers the fitted records' misfit in terms of their noise, but raises"
             f" the gap of those that are not fitted {others}."
         )
     return None
@@ -270,7 +283,7 @@ def _of_every_test(at: Stage) -> list[Finding]:
         result.append(
             Finding(
                 "warning",
-                f"{name} is another one in every test (from {min(values):.3g} to"
+                f"{_named(name)} is another one in every test (from {min(values):.3g} to"
                 f" {max(values):.3g}). No model predicts it, and records that were not fitted are"
                 " met with the others' mean: find what sets it, and hold that still.",
             )

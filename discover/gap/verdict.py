@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from discover.words import (
+    left_over,
     listed,
     percent,
     probability,
@@ -134,8 +135,8 @@ def _left_over(document: Mapping[str, Any]) -> list[str]:
     lines = []
     remainder = document.get("remainder_percent")
     if remainder:
-        left = remainder_text(remainder)
-        lines.append(f"Left over: of the force, beyond noise, {left}; every record counts alike.")
+        several = len(document["records"]) > 1
+        lines.append(f"Left over: {left_over(remainder_text(remainder), several=several)}.")
     if document.get("shape"):
         lines.append(f"Its shape: {document['shape']}.")
     return lines

@@ -14,6 +14,7 @@ from discover.words import (
     coordinate_value,
     counted,
     interval,
+    left_over,
     listed,
     percent,
     probability,
@@ -233,7 +234,8 @@ def remainder_line(document: Mapping[str, Any]) -> str:
         texts = [f"{t} in band {i}" for i, t in enumerate(texts, start=1)]
     if not texts:
         return ""
-    return f"Left over: of the force, beyond noise, {listed(texts)}; every record counts alike."
+    several = sum(len(b["records"]) for b in document["bands"]) > 1
+    return f"Left over: {left_over(listed(texts), several=several)}."
 
 
 def certainty_line(document: Mapping[str, Any]) -> str:
