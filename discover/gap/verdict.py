@@ -25,6 +25,10 @@ _VERDICTS = {
     "unexplained": "something is missing that no effect in the catalogue explains",
 }
 _LINES_QUIET = "with {} added nothing more shows in the tests' own lines"
+_AGREES_REFITTED = (
+    "with the model's own coefficients refitted it meets the measurement within the noise;"
+    " no term is missing"
+)
 _NOT_SHOWN = "nothing is missing that these tests would show"
 _UNASKED = "something is missing that none of the effects asked for explains"
 _FALLS = 0.995  # of a gap: what does not fall below it is not said to fall
@@ -62,17 +66,25 @@ def _said(document: Mapping[str, Any], verdict: str) -> str:
     if verdict == "agrees" and over > CLOSED:
         return f"{_NOT_SHOWN} ({times}; see the notes)"
     said = _VERDICTS.get(verdict, "")
+    if verdict == "agrees" and _begun(document) * _REFITTED <= document["gap_percent"]:
+        return _AGREES_REFITTED
     if verdict == "unexplained":
         said = _UNASKED if document.get("effects") else said
         return f"{said} ({times})"
     return said
 
 
+def _begun(document: Mapping[str, Any]) -> float:
+    """Return the gap from which the rounds start: of the model with its coefficients refitted."""
+    rounds = document["rounds"]
+    return float(rounds[0]["gap_before_percent"] if rounds else document["final_gap_percent"])
+
+
 def _gaps(document: Mapping[str, Any]) -> str:
     """Return the gap as the model was given, refitted, and with what was added."""
     given, final = document["gap_percent"], document["final_gap_percent"]
     rounds = document["rounds"]
-    begun = rounds[0]["gap_before_percent"] if rounds else final
+    begun = _begun(document)
     parts = [f"{percent(given)} {'before' if begun * _REFITTED > given else 'as given'}"]
     if begun * _REFITTED <= given:
         parts.append(f"{percent(begun)} with the model's own coefficients refitted")

@@ -128,3 +128,12 @@ def test_names_of_many_rounds_do_not_run_into_each_other():
     many = gap_by_round({**document, "rounds": 3 * document["rounds"]})
     assert "rotate(-28" in many
     assert "rotate(-28" not in few
+
+
+def test_a_model_that_agrees_only_when_refitted_is_not_said_to_agree_as_it_is():
+    document = sample_gap_document()
+    document |= {"rounds": [], "verdict": "agrees", "noise_percent": 1.3, "final_gap_percent": 1.3}
+    refitted = gap_lines(document)[0]
+    assert "with the model's own coefficients refitted" in refitted
+    as_it_is = gap_lines({**document, "gap_percent": 1.3})[0]
+    assert as_it_is.endswith("agree within the noise; nothing is missing.")
