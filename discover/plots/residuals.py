@@ -114,6 +114,8 @@ def over_tests(records: Sequence[ShownRecord], *, name: str) -> str | None:
             lines += lower.plot(numbers, [x.gain_percent for _, _, x in some], **look)
             series(lines, label)
         upper.set_yscale("log")
+        for axes in (upper, lower):
+            axes.margins(y=0.12)  # marks are whole at the edges too
         low, high = upper.get_ylim()
         upper.set_ylim(min(low, 0.8), max(high, 1.5))
         upper.axhline(1.0, color=ACCENT, linewidth=1.2)
