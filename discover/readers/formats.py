@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
 from discover.readers.excel import open_excel
 from discover.readers.hdf5 import open_hdf5
@@ -44,6 +44,9 @@ OPENERS: Mapping[str, Callable[[bytes, str], Book]] = {
     ".mdf": open_mdf,
 }
 """What opens a file, by its suffix in lower case."""
+
+IN_PIECES: Mapping[str, Callable[[Path, str], Book]] = {".parquet": open_parquet}
+"""What opens a file of which a piece at a time can be read."""
 
 
 def open_book(data: bytes, name: str, *, where: str) -> Book:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -46,6 +46,11 @@ class Source:
     """s, the sampling interval that the file states; None where it states none."""
     start: float = 0.0
     """s, the time of the first sample that goes with `step`."""
+    rows: int | None = None
+    """N, where the file tells it before its columns are read; else None."""
+    pieces: Callable[[Sequence[int]], Iterator[list[Array]]] | None = None
+    """The same columns as `read`, a piece (B,) of each at a time; None where a file has to be read
+    whole."""
 
 
 @dataclass(frozen=True)
