@@ -11,15 +11,13 @@ import numpy as np
 from discover.readers.columns import find_column, read_columns
 from discover.readers.entries import Entry
 from discover.readers.record import MAY_LACK, read_record
-from discover.readers.source import Source
+from discover.readers.source import LONG, Source
 from discover.record_kind import classify
 from discover.records import Finding, LongRecord, Piece, Record
 from models.checks import Array, InputError
 
-LONG = 2**22
-"""Samples, above which a sine test is read in pieces."""
 FIRST = 2**20
-"""Samples of such a record that are held."""
+"""Samples that are held of a sine test that is read in pieces."""
 
 _MEMORY = 250.0  # bytes a sample that the work on a whole record takes, about
 _QUANTITIES = ("time", "displacement", "force")
@@ -47,7 +45,7 @@ def read_record_of_any_length(
     rows = source.rows or 0
     if rows <= LONG:
         return whole(source, entry)
-    record, findings, assumed = whole(_part(source, 0, FIRST), entry)
+    record, findings, assumed = whole(first_part(source), entry)
     file = record.file
     sine = record.displacement is not None and classify(record).kind == "sine"
     if not sine:
@@ -66,6 +64,13 @@ def read_record_of_any_length(
     )
     findings.append(Finding("note", text, file))
     return replace(record, long=LongRecord(rows, pieces)), findings, assumed
+
+
+def first_part(source: Source) -> Source:
+    """Return what is held of a source: its first rows where it is long, else all."""
+    if source.pieces is None or source.rows is None or source.rows <= LONG:
+        return source
+    return _part(source, 0, FIRST)
 
 
 def _part(source: Source, first: int, last: int) -> Source:

@@ -14,10 +14,9 @@ import pyarrow.parquet as parquet
 
 from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
-from discover.readers.source import Book, Source, single
+from discover.readers.source import PIECE, Book, Source, single
 from models.checks import Array, InputError
 
-_PIECE = 2**17  # samples
 _BUFFER = 2**20  # bytes of a column that are read ahead
 
 
@@ -54,13 +53,13 @@ def open_parquet(data: bytes | Path, name: str) -> Book:
 
     def pieces(indices: Sequence[int]) -> Iterator[list[Array]]:
         names = [schema.names[i] for i in indices]
-        kept = [i for i, own in enumerate(schema.names) if own in names]
         firsts: dict[int, int] = {}
         try:
             with _opened(data) as file:
-                for batch in file.iter_batches(_PIECE, columns=names):
+                for batch in file.iter_batches(PIECE, columns=names):
                     piece = pa.Table.from_batches([batch])
-                    columns = {i: piece.column(kept.index(i)) for i in indices}
+                    at = {i: _position(i, schema.names, piece.column_names) for i in indices}
+                    columns = {i: piece.column(place) for i, place in at.items()}
                     for i, column in columns.items():
                         firsts.setdefault(i, _first(column))
                     yield [_numbers(c, headers[i], name, firsts[i]) for i, c in columns.items()]
@@ -68,6 +67,12 @@ def open_parquet(data: bytes | Path, name: str) -> Book:
             raise content_error("a whole Parquet file", error, name) from None
 
     return single(Source(name, headers, read, units=stamps, rows=rows, pieces=pieces))
+
+
+def _position(index: int, names: list[str], read: Sequence[str]) -> int:
+    """Return where a column of the file is among those read, which may have its name too."""
+    before = names[:index].count(names[index])
+    return [place for place, own in enumerate(read) if own == names[index]][before]
 
 
 def _opened(data: bytes | Path) -> parquet.ParquetFile:
