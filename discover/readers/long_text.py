@@ -18,7 +18,7 @@ from discover.readers.text_table import SPACES, fields_of, laid_out, open_text
 from models.checks import Array
 
 _HEAD = 2**20  # bytes that show the layout
-_PIECE = 2**23  # bytes
+_PIECE = 2**20  # bytes; some tens of them are read ahead
 _WIDE_BOM = (b"\xff\xfe", b"\xfe\xff")
 
 
