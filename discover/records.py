@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
@@ -45,13 +45,36 @@ class Finding:
         return result
 
 
+@dataclass(frozen=True)
+class Piece:
+    """Some samples of a long record, in SI units."""
+
+    time: Array
+    """(B,) s, strictly increasing, from piece to piece too."""
+    displacement: Array
+    """(B,) m."""
+    force: Array
+    """(B,) N."""
+
+
+@dataclass(frozen=True)
+class LongRecord:
+    """All samples of a record that is too long to be held: they are read a piece at a time."""
+
+    samples: int
+    """N, of all pieces together."""
+    pieces: Callable[[], Iterator[Piece]]
+    """Reads them from the first on, each time that it is called."""
+
+
 @dataclass(frozen=True, repr=False)
 class Record:
     """One measured record, in SI units.
 
     A sine test is fitted at the times at which it was measured, which may jitter and lack samples.
     What needs equal steps takes `even`. Columns may be anything that numpy takes for an array of
-    numbers (a pandas Series, a list); they are kept as read-only views.
+    numbers (a pandas Series, a list); they are kept as read-only views. Where `long` is there, the
+    columns are the first of the record's samples.
 
     Raises
     ------
@@ -89,6 +112,8 @@ class Record:
     """Never fitted, only predicted."""
     uniform: bool = True
     """False only for a digitised force curve, whose points are far from evenly spaced."""
+    long: LongRecord | None = field(default=None, repr=False, compare=False)
+    """All samples of a sine test that is too long to be held; None where the columns are all."""
 
     _known: dict[Callable[[Record], Any], Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
@@ -117,13 +142,18 @@ class Record:
 
     def __repr__(self) -> str:
         """Return the record's name, length and sizes in a line."""
-        told = [f"{self.time.size} samples, {np.ptp(self.time):.4g} s"]
+        told = [f"{self.samples} samples, {self.step * (self.samples - 1):.4g} s"]
         told.append(f"force up to {np.abs(self.force).max():.4g} N")
         if self.displacement is not None:
             told.append(f"displacement up to {np.abs(self.displacement).max():.4g} m")
         if self.held_out:
             told.append("held out")
         return f"<Record {self.file!r}: {', '.join(told)}>"
+
+    @property
+    def samples(self) -> int:
+        """Number of samples, in memory or not."""
+        return self.time.size if self.long is None else self.long.samples
 
     @property
     def gaps(self) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from discover.gap.where import Place, misfit_at_samples, phase_means
-from discover.rows import RecordRows
+from discover.rows import RecordRows, force_at_samples
 from models.checks import Array
 from models.constitutive import ForceModel
 
@@ -53,7 +53,9 @@ def leftover_in_words(
 
 def _lines(rows: RecordRows, model: ForceModel) -> Array:
     """Return the misfit's lines (H,), N, less the mean; real parts are in phase with velocity."""
-    return np.asarray(rows.observation.windows[0].project(misfit_at_samples(rows, model))[1:])
+    window = rows.observation.windows[0]
+    modelled = window.project(force_at_samples(rows.observation, model))
+    return np.asarray((window.force - modelled)[1:])
 
 
 def _above_noise(rows: RecordRows, lines: Array) -> Array:

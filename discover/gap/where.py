@@ -159,8 +159,7 @@ def _odd(rows: RecordRows, model: ForceModel) -> float:
     if o.kind != "sine":
         return float("nan")
     window = o.windows[0]
-    left = misfit_at_samples(rows, model)
-    lines = window.project(left)
+    lines = window.force - window.project(force_at_samples(o, model))
     power = np.abs(lines) ** 2
     return float(power[1::2].sum() / max(power.sum(), 1e-300))
 

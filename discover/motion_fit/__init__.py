@@ -8,7 +8,9 @@ from dataclasses import replace
 from joblib import Parallel, delayed
 
 from discover.motion_fit.band import observe_band
+from discover.motion_fit.cycle_sums import POINTS
 from discover.motion_fit.harmonic import observe_sine
+from discover.motion_fit.long_sine import observe_long_sine
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
 from discover.motion_fit.periodic import observe_periodic
 from discover.record_kind import classify
@@ -44,6 +46,8 @@ def observe(record: Record) -> Observation:
             raise InputError("frequency", expected="found or given", where=record.file)
         coefficients = None if kind.sine is None else kind.sine.coefficients
         noise = 0.0 if kind.sine is None else kind.sine.noise_rms
+        if record.long is not None and kind.sine is not None:
+            return observe_long_sine(record, record.long, kind.usable, kind.sine)
         return observe_sine(record, kind.usable, frequency, coefficients, noise)
     if record.even is not record:
         if record.gaps:
@@ -69,4 +73,4 @@ def observe_all(records: Sequence[Record], jobs: int) -> tuple[Observation, ...]
     return tuple(replace(o, test=place) for place, o in enumerate(seen, start=1))
 
 
-__all__ = ["Lines", "Observation", "Window", "observe", "observe_all", "real_rows"]
+__all__ = ["POINTS", "Lines", "Observation", "Window", "observe", "observe_all", "real_rows"]

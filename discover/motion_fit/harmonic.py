@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from discover.motion_fit.harmonic_lines import harmonic_lines
+from discover.motion_fit.cycle_sums import PHASES, STRETCHES, CycleSums, cycle_sums
+from discover.motion_fit.harmonic_lines import harmonic_lines, lines_of
 from discover.motion_fit.noise import density_between_lines
 from discover.motion_fit.noise_spectrum import noise_spectrum
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
@@ -20,9 +21,10 @@ from models.motion import Motion, harmonic_motion
 
 HARMONICS = 31  # of the force; friction's fall off as 1/k, so further ones decide nothing
 GRID = 1024  # points of the one cycle kept for steady-state simulation
-_RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights stay finite
+RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights stay finite
 _PHASES = 360
 _REVERSAL = 3e-3  # of the speed amplitude
+_PIECE = 2**16  # samples
 BoolArray = NDArray[np.bool_]
 
 
@@ -45,7 +47,7 @@ def _motion_at(time: Array, frequency: float, displacement: Lines) -> Motion:
     return Motion(time, x, v, a, differentiate, "weyl")
 
 
-def _moving(time: Array, frequency: float, displacement: Lines | None) -> BoolArray:
+def moving(time: Array, frequency: float, displacement: Lines | None) -> BoolArray:
     """Return which samples lie clear of the reversals of motion.
 
     Where friction reverses, a sample is on one side or the other by chance: where sampling and
@@ -53,9 +55,10 @@ def _moving(time: Array, frequency: float, displacement: Lines | None) -> BoolAr
     """
     if displacement is None:
         return np.ones(time.size, dtype=bool)
-    orders = np.arange(displacement.size)
-    velocity = harmonic_series(time, frequency, 1j * orders * displacement)
-    return np.asarray(np.abs(velocity) > _REVERSAL * float(np.abs(velocity).max()))
+    phasors = 1j * np.arange(displacement.size) * displacement
+    cycle = harmonic_series(np.arange(GRID) / (GRID * frequency), frequency, phasors)
+    velocity = harmonic_series(time, frequency, phasors)
+    return np.asarray(np.abs(velocity) > _REVERSAL * float(np.abs(cycle).max()))
 
 
 def observe_sine(
@@ -107,14 +110,14 @@ def observe_sine(
             "sampling", expected="above 2.5 times the frequency", found="less", where=record.file
         )
     middle = float(time.mean()) if duration * frequency > 2.0 else None
-    moving = _moving(time, frequency, displacement)
-    fit = harmonic_lines(time[moving], frequency, count, middle=middle)
-    (solution,) = fit.solve(force[None, moving])
+    clear = moving(time, frequency, displacement)
+    fit = harmonic_lines(time[clear], frequency, count, middle=middle)
+    (solution,) = fit.solve(force[None, clear])
     residual = np.zeros(time.size)
-    residual[moving] = force[moving] - fit.fitted(solution)
-    time, force = fit.time, force[moving]
+    residual[clear] = force[clear] - fit.fitted(solution)
+    time, force = fit.time, force[clear]
     drift = 0.0 if middle is None else float(solution[-1])
-    (lines,) = fit.lines_of(solution[None])
+    (lines,) = lines_of(solution[None], count)
     multiples: Array = frequency * np.arange(count + 1, dtype=np.float64)
     if record.uniform:
         density = density_between_lines(residual, record.step, frequency, multiples)
@@ -129,7 +132,7 @@ def observe_sine(
         density = np.full(count + 1, 2.0 * duration / time.size * (residual @ residual) / freedom)
         noise = float(np.sqrt(residual @ residual / freedom))
     power = float(np.sum(np.abs(lines) ** 2))
-    variance = np.maximum(density / (2.0 * duration), _RELATIVE_FLOOR**2 * power)
+    variance = np.maximum(density / (2.0 * duration), RELATIVE_FLOOR**2 * power)
     fitted_phase = displacement is None
     harmonic = np.arange(count + 1)
     if displacement is None:
@@ -165,7 +168,17 @@ def observe_sine(
         phase_fitted=fitted_phase,
         drift=drift,
         usable=usable,
+        sums=_sums(time, force, frequency),
     )
+
+
+def _sums(time: Array, force: Array, frequency: float) -> CycleSums | None:
+    """Return the sums of a record's samples; None where each may be a cell of its own."""
+    if time.size <= PHASES * STRETCHES:
+        return None
+    first, last = float(time[0]), float(time[-1])
+    parts = (slice(i, i + _PIECE) for i in range(0, time.size, _PIECE))
+    return cycle_sums(((time[p], force[p]) for p in parts), frequency, first, last)
 
 
 def _fit_phase(

@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from discover.motion_fit.cycle_sums import CycleSums
 from discover.motion_fit.noise_spectrum import NoiseSpectrum
 from discover.records import Record
 from models.checks import Array
@@ -104,6 +105,21 @@ class Observation:
     """Number of the record in its campaign, from 1; 0 where it is not known."""
     usable: slice = field(default_factory=lambda: slice(None))
     """Samples of the record that are used."""
+    sums: CycleSums | None = None
+    """Of all usable samples of a sine test that has many; of a long one `time`, `motion` and
+    `measured` hold the first."""
+
+    @property
+    def samples(self) -> int:
+        """Number of usable samples, in memory or not."""
+        return self.measured.size if self.sums is None else self.sums.samples
+
+    @property
+    def duration(self) -> float:
+        """s, from the first usable sample to the last."""
+        if self.sums is not None:
+            return self.sums.last - self.sums.first
+        return float(self.time[-1] - self.time[0])
 
     @cached_property
     def resolved(self) -> Observation:

@@ -13,12 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from discover.readers.choice import chosen_sources
+from discover.readers.content import content_error
 from discover.readers.draft import Answers, Draft, draft_campaign
 from discover.readers.entries import Entry, expanded
-from discover.readers.formats import OPENERS, open_book
+from discover.readers.formats import IN_PIECES, OPENERS, open_book
 from discover.readers.guess import listed
+from discover.readers.long_record import read_record_of_any_length
 from discover.readers.plausibility import implausible
-from discover.readers.record import read_record
 from discover.readers.source import Book
 from discover.readers.tables import (
     read_column_names,
@@ -35,6 +36,7 @@ CAMPAIGN_FILE = "campaign.toml"
 _TABLES = ("title", "device", "columns", "units", "records", "rig", "system")
 _LONGEST_TITLE = 400
 _MOST_ERRORS = 20
+_PIECE = 2**20  # bytes
 
 
 def read_campaign(path: str | Path) -> Campaign:
@@ -171,7 +173,9 @@ class _Reading:
         for source in sources:
             part = source.part if entry.part is not None or len(sources) > 1 else ""
             try:
-                found = read_record(source, entry, names=own, units=self.units, part=part)
+                found = read_record_of_any_length(
+                    source, entry, names=own, units=self.units, part=part
+                )
             except InputError as error:
                 self.errors.append(error)
                 continue
@@ -205,6 +209,14 @@ class _Reading:
             return self.book
         where = f"{CAMPAIGN_FILE} [[records]]"
         hint = len(self.errors) < _MOST_ERRORS  # which costs a look at all names
+        opener = IN_PIECES.get(Path(file).suffix.lower())
+        if opener is not None:
+            path = _path_of(self.folder, file, where=where, hint=hint)
+            if file not in self.hashed:
+                self.hashed.add(file)
+                _digest_file(self.digest, file, path)
+            self.book = opener(path, file)
+            return self.book
         data = _bytes_of(self.folder, file, where=where, hint=hint)
         if file not in self.hashed:
             self.hashed.add(file)
@@ -235,12 +247,21 @@ def _check_keys(table: Mapping[str, Any]) -> None:
 
 def _bytes_of(folder: Path, name: str, *, where: str, hint: bool = True) -> bytes:
     """Return a file's bytes if it lies inside the campaign folder, symbolic links followed."""
+    target = _path_of(folder, name, where=where, hint=hint)
+    try:
+        return target.read_bytes()
+    except OSError as error:
+        raise _not_read(name, error.strerror or "an unreadable file", where) from None
+
+
+def _path_of(folder: Path, name: str, *, where: str, hint: bool = True) -> Path:
+    """Return a file's path if it lies inside the campaign folder, symbolic links followed."""
     root = folder.resolve()
     try:
         target = (root / name).resolve()
         inside = target.is_relative_to(root) and not Path(name).is_absolute()
         if inside and target.is_file():
-            return target.read_bytes()
+            return target
         found = _kind(target) if inside else "outside of it"
         if hint and inside and not target.exists():
             found += nearest(name, _names(root))
@@ -248,7 +269,11 @@ def _bytes_of(folder: Path, name: str, *, where: str, hint: bool = True) -> byte
         found = error.strerror or "an unreadable file"
     except (ValueError, RuntimeError) as error:  # a zero byte in the name, a loop of links
         found = str(error)
-    raise InputError(
+    raise _not_read(name, found, where)
+
+
+def _not_read(name: str, found: str, where: str) -> InputError:
+    return InputError(
         f"file {shown(name)}", expected="in the campaign folder", found=found, where=where
     )
 
@@ -272,7 +297,22 @@ def _names(root: Path) -> tuple[str, ...]:
 
 def _framed(name: str, data: bytes) -> bytes:
     """Return bytes that no other division into files can give."""
-    return f"{name}\0{len(data)}\0".encode() + data
+    return _frame(name, len(data)) + data
+
+
+def _frame(name: str, size: int) -> bytes:
+    return f"{name}\0{size}\0".encode()
+
+
+def _digest_file(digest: Any, name: str, path: Path) -> None:
+    """Let a file's framed bytes into a digest, without holding them."""
+    try:
+        with path.open("rb") as file:
+            digest.update(_frame(name, os.fstat(file.fileno()).st_size))
+            while data := file.read(_PIECE):
+                digest.update(data)
+    except OSError as error:
+        raise content_error("readable", error, name) from None
 
 
 def _check_used(

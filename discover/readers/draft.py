@@ -12,9 +12,9 @@ import numpy as np
 from discover.readers.columns import find_column, split_header
 from discover.readers.entries import Entry
 from discover.readers.fastest_motion import fastest_motion
-from discover.readers.formats import OPENERS, open_book
+from discover.readers.formats import OPENERS, open_file
 from discover.readers.guess import UNSURE, Guess, TableGuess, guess_table
-from discover.readers.record import read_record
+from discover.readers.long_record import first_part, read_record_of_any_length
 from discover.readers.source import Book, Source
 from discover.readers.toml_text import campaign_text
 from discover.records import Finding, Record
@@ -129,7 +129,7 @@ def draft_campaign(
     for file in files:
         entry = Entry(file, step=_step(answers))
         try:
-            book = open_book((folder / file).read_bytes(), file, where=file)
+            book = open_file(folder / file, file, where=file)
         except InputError as error:
             left_out.append((file, str(error)))
             continue
@@ -143,7 +143,7 @@ def draft_campaign(
     for entry, source, guess in found:
         own = _own_channel(source, guess, columns)
         try:
-            read = read_record(
+            read = read_record_of_any_length(
                 source,
                 replace(entry, channel=own),
                 names={**columns, **own},
@@ -215,7 +215,7 @@ def _tables(
 
 def _guessed(source: Source, answers: Answers) -> TableGuess:
     """Return a table's guess with the columns that the user named."""
-    guess = guess_table(source)
+    guess = guess_table(first_part(source))
     columns = dict(guess.columns)
     for quantity, header in answers.columns.items():
         index = find_column(source, quantity, header)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
 from discover.readers.excel import open_excel
 from discover.readers.hdf5 import open_hdf5
+from discover.readers.long_text import open_long_text
 from discover.readers.lvm import is_lvm, open_lvm
 from discover.readers.matlab import open_mat
 from discover.readers.mdf import open_mdf
@@ -44,6 +45,23 @@ OPENERS: Mapping[str, Callable[[bytes, str], Book]] = {
     ".mdf": open_mdf,
 }
 """What opens a file, by its suffix in lower case."""
+
+IN_PIECES: Mapping[str, Callable[[Path, str], Book]] = {
+    ".csv": open_long_text,
+    ".tsv": open_long_text,
+    ".parquet": open_parquet,
+    ".h5": open_hdf5,
+    ".hdf5": open_hdf5,
+}
+"""What opens a file of which a piece at a time can be read."""
+
+
+def open_file(path: Path, name: str, *, where: str) -> Book:
+    """Open a file that lies at a path; arguments and errors else as of `open_book`."""
+    opener = IN_PIECES.get(PurePath(name).suffix.lower())
+    if opener is None:
+        return open_book(path.read_bytes(), name, where=where)
+    return opener(path, name)
 
 
 def open_book(data: bytes, name: str, *, where: str) -> Book:

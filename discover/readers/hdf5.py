@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from discover.readers.content import content_error, optional_package
 from discover.readers.sampling_note import stated_step
-from discover.readers.source import MOST_VALUES, Book
+from discover.readers.source import LONG, MOST_VALUES, Book, LongVector
 from discover.readers.tree import Leaf, tree_book
 from models.checks import InputError
 
@@ -24,8 +25,10 @@ def is_hdf5(data: bytes) -> bool:
     return any(data[at : at + 8] == _MAGIC for at in (0, 512, 1024, 2048))
 
 
-def open_hdf5(data: bytes, name: str, *, joint: str = "/") -> Book:
+def open_hdf5(data: bytes | Path, name: str, *, joint: str = "/") -> Book:
     """Open an HDF5 file; groups hold tests, data sets are columns.
+
+    Of a path, long vectors are read when they are asked for, whole or in pieces.
 
     An attribute ``units`` of a data set is its unit; a scalar or an attribute may state the
     sampling rate. What lies in other files is not followed.
@@ -37,8 +40,9 @@ def open_hdf5(data: bytes, name: str, *, joint: str = "/") -> Book:
     """
     h5py = optional_package("h5py", extra="hdf5", name=name)
     try:
-        with h5py.File(io.BytesIO(data), "r") as file:
-            leaves = list(_Walk(h5py, file).leaves(file, ()))
+        path = data if isinstance(data, Path) else None
+        with h5py.File(data if isinstance(data, Path) else io.BytesIO(data), "r") as file:
+            leaves = list(_Walk(h5py, file, path).leaves(file, ()))
     except InputError:
         raise
     except Exception as error:  # the library lets errors of many kinds through
@@ -49,9 +53,10 @@ def open_hdf5(data: bytes, name: str, *, joint: str = "/") -> Book:
 class _Walk:
     """One walk over a file that meets every object once, however it is linked."""
 
-    def __init__(self, h5py: Any, file: Any) -> None:
+    def __init__(self, h5py: Any, file: Any, path: Path | None) -> None:
         self.h5py = h5py
         self.file = file
+        self.path = path
         self.met = {h5py.h5o.get_info(file.id).addr}
 
     def leaves(self, group: Any, path: tuple[str, ...]) -> Iterator[Leaf]:
@@ -76,7 +81,14 @@ class _Walk:
 
     def _values(self, item: Any, path: tuple[str, ...]) -> Iterator[Leaf]:
         kind = item.attrs.get("MATLAB_class")
-        if item.shape is None or item.size > MOST_VALUES or kind == b"char":
+        if item.shape is None or kind == b"char":
+            return
+        numbers = item.ndim == 1 and item.dtype.kind in "iuf"
+        if self.path is not None and numbers and item.size > LONG:
+            column = LongVector(item.size, _reader(self.h5py, self.path, item.name))
+            yield Leaf(path, column, unit=_unit(item), step=self._step(item))
+            return
+        if item.size > MOST_VALUES:
             return
         if self.h5py.check_dtype(ref=item.dtype) is not None:  # cells, members of a structure
             for index, reference in enumerate(np.ravel(item[()]), start=1):
@@ -84,12 +96,28 @@ class _Walk:
                     own = (*path[:-1], f"{path[-1]}({index})")
                     yield from self._item(self.file[reference], own)
             return
-        step = stated_step([(key, repr(float(value.ravel()[0]))) for key, value in _scalars(item)])
+        step = self._step(item)
         if item.dtype.names:  # a table, as pandas and PyTables write it
             for field in item.dtype.names:
                 yield Leaf((*path, field), item[field], step=step)
             return
         yield Leaf(path, item[()], unit=_unit(item), step=step)
+
+    def _step(self, item: Any) -> float | None:
+        """Return the sampling interval that a data set's attributes state."""
+        return stated_step(
+            [(key, repr(float(value.ravel()[0]))) for key, value in _scalars(item)]
+        )
+
+
+def _reader(h5py: Any, path: Path, name: str) -> Callable[[slice], np.ndarray[Any, Any]]:
+    """Return what reads a part of a data set."""
+
+    def part(inside: slice) -> np.ndarray[Any, Any]:
+        with h5py.File(path, "r") as file:
+            return np.asarray(file[name][inside])
+
+    return part
 
 
 def _scalars(item: Any) -> Iterator[tuple[str, Any]]:

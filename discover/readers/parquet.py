@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,14 +14,17 @@ import pyarrow.parquet as parquet
 
 from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
-from discover.readers.source import Book, Source, single
+from discover.readers.source import PIECE, Book, Source, single
 from models.checks import Array, InputError
 
+_BUFFER = 2**20  # bytes of a column that are read ahead
 
-def open_parquet(data: bytes, name: str) -> Book:
+
+def open_parquet(data: bytes | Path, name: str) -> Book:
     """Open a Parquet file; its column names are the headers.
 
-    Time stamps are read as seconds since the first one, with the resolution that they have.
+    Of a path the columns are read when they are asked for, whole or in pieces. Time stamps are
+    read as seconds since the first one, with the resolution that they have.
 
     Raises
     ------
@@ -28,8 +32,8 @@ def open_parquet(data: bytes, name: str) -> Book:
         Where it is not Parquet, or, on reading, a column is not numeric.
     """
     try:
-        file = parquet.ParquetFile(io.BytesIO(data))
-        schema = file.schema_arrow
+        with _opened(data) as file:
+            schema, rows = file.schema_arrow, int(file.metadata.num_rows)
         headers = tuple(str(h).strip() for h in schema.names)
     except (pa.ArrowException, OSError) as error:
         raise content_error("a Parquet file", error, name) from None
@@ -38,46 +42,84 @@ def open_parquet(data: bytes, name: str) -> Book:
     def read(indices: Sequence[int]) -> list[Array]:
         names = [schema.names[i] for i in indices]
         try:
-            table = file.read(columns=names)
+            with _opened(data) as file:
+                table = file.read(columns=names)
         except (pa.ArrowException, OSError) as error:
             raise content_error("a whole Parquet file", error, name) from None
         # Columns of one name come together, in the file's order.
         kept = [i for i, own in enumerate(schema.names) if own in names]
-        return [_numbers(table.column(kept.index(i)), headers[i], name) for i in indices]
+        columns = {i: table.column(kept.index(i)) for i in indices}
+        return [_numbers(c, headers[i], name, _first(c)) for i, c in columns.items()]
 
-    return single(Source(name, headers, read, units=stamps))
+    def pieces(indices: Sequence[int]) -> Iterator[list[Array]]:
+        names = [schema.names[i] for i in indices]
+        firsts: dict[int, int] = {}
+        try:
+            with _opened(data) as file:
+                for batch in file.iter_batches(PIECE, columns=names):
+                    piece = pa.Table.from_batches([batch])
+                    at = {i: _position(i, schema.names, piece.column_names) for i in indices}
+                    columns = {i: piece.column(place) for i, place in at.items()}
+                    for i, column in columns.items():
+                        firsts.setdefault(i, _first(column))
+                    yield [_numbers(c, headers[i], name, firsts[i]) for i, c in columns.items()]
+        except (pa.ArrowException, OSError) as error:
+            raise content_error("a whole Parquet file", error, name) from None
+
+    return single(Source(name, headers, read, units=stamps, rows=rows, pieces=pieces))
+
+
+def _position(index: int, names: list[str], read: Sequence[str]) -> int:
+    """Return where a column of the file is among those read, which may have its name too."""
+    before = names[:index].count(names[index])
+    return [place for place, own in enumerate(read) if own == names[index]][before]
+
+
+def _opened(data: bytes | Path) -> parquet.ParquetFile:
+    """Open a file that reads no more of a group of rows than is asked for."""
+    where = data if isinstance(data, Path) else io.BytesIO(data)
+    buffered = isinstance(data, Path)
+    return parquet.ParquetFile(
+        where, buffer_size=_BUFFER if buffered else 0, pre_buffer=not buffered
+    )
 
 
 def _is_time(kind: Any) -> bool:
     return bool(pa.types.is_timestamp(kind) or pa.types.is_duration(kind) or pa.types.is_time(kind))
 
 
-def _numbers(column: Any, header: str, name: str) -> Array:
+def _numbers(column: Any, header: str, name: str, first: int) -> Array:
+    """Return a column's numbers; of integers and time stamps `first` may be taken away."""
     kind = column.type
     if _is_time(kind):
-        return _seconds(column)
+        unit = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[kind.unit]
+        return np.asarray(_doubles(_less(_counts(column), first)) / unit)
     if pa.types.is_integer(kind):
         # Counts of nanoseconds since 1970 are beyond what a float holds to the digit.
-        return _doubles(_from_first(column.cast(pa.int64(), safe=False)))
+        counts = _counts(column)
+        return _doubles(_less(counts, first) if abs(first) > 2**53 else counts)
     if not pa.types.is_floating(kind):
         raise InputError(header, expected="numeric", found=str(kind), where=name)
     return _doubles(column.cast(pa.float64()))
 
 
-def _seconds(column: Any) -> Array:
-    """Return time stamps as seconds since the first one."""
-    unit = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[column.type.unit]
-    wide = pa.int32() if column.type.bit_width == 32 else pa.int64()
-    counts = _from_first(column.cast(wide).cast(pa.int64()), always=True)
-    return np.asarray(_doubles(counts) / unit)
+def _counts(column: Any) -> Any:
+    """Return integers, or the counts of time stamps."""
+    if _is_time(column.type):
+        column = column.cast(pa.int32() if column.type.bit_width == 32 else pa.int64())
+    return column.cast(pa.int64(), safe=False)
 
 
-def _from_first(column: Any, *, always: bool = False) -> Any:
-    """Return integers less the first of them, where they are too large for a float."""
-    first = next((value for value in column[:1].to_pylist() if value is not None), 0)
-    if always or abs(first) > 2**53:
-        return compute.subtract(column, pa.scalar(first, pa.int64()))
-    return column
+def _first(column: Any) -> int:
+    """Return the first of a column's counts; 0 where it has none."""
+    if not (_is_time(column.type) or pa.types.is_integer(column.type)):
+        return 0
+    found = _counts(column[:1]).to_pylist()
+    return next((int(value) for value in found if value is not None), 0)
+
+
+def _less(counts: Any, first: int) -> Any:
+    return compute.subtract(counts, pa.scalar(first, pa.int64()))
 
 
 def _doubles(column: Any) -> Array:

@@ -26,7 +26,7 @@ from discover.records import Finding, Record
 from models.checks import InputError, shown
 
 _FEW = 50  # samples, below which a warning says so
-_MAY_LACK = tuple(name for name in QUANTITIES if name not in ("time", "force"))
+MAY_LACK = tuple(name for name in QUANTITIES if name not in ("time", "force"))
 
 
 def read_record(
@@ -67,7 +67,7 @@ def read_record(
         source,
         names=names,
         units=units,
-        may_lack=_MAY_LACK,
+        may_lack=MAY_LACK,
         step=entry.step,
     )
     if "displacement" not in columns.values and None in (entry.frequency, entry.amplitude):

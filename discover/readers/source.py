@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from models.checks import Array, InputError
 
+LONG = 2**22
+"""Samples, above which a record may be read in pieces."""
+PIECE = 2**17
+"""Samples of a piece."""
 MOST_VALUES = 2**27
 """Of one file: more than memory holds is damage or ill will."""
 
@@ -46,6 +51,11 @@ class Source:
     """s, the sampling interval that the file states; None where it states none."""
     start: float = 0.0
     """s, the time of the first sample that goes with `step`."""
+    rows: int | None = None
+    """N, where the file tells it before its columns are read; else None."""
+    pieces: Callable[[Sequence[int]], Iterator[list[Array]]] | None = None
+    """The same columns as `read`, a piece (B,) of each at a time; None where a file has to be read
+    whole."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +79,53 @@ def single(source: Source) -> Book:
     return Book(source.name, (source,))
 
 
+@dataclass(frozen=True)
+class LongVector:
+    """A column that stays in its file; numpy makes an array of it."""
+
+    size: int
+    """N."""
+    part: Callable[[slice], np.ndarray[Any, Any]]
+    """Reads some of its values."""
+
+    def __getitem__(self, part: slice) -> np.ndarray[Any, Any]:
+        """Return some of its values."""
+        return self.part(part)
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray[Any, Any]:
+        """Return all of its values, for numpy."""
+        return np.asarray(self.part(slice(None)), dtype=dtype)
+
+
+def column_pieces(
+    name: str, headers: Sequence[str], columns: Sequence[Any]
+) -> Callable[[Sequence[int]], Iterator[list[Array]]]:
+    """Return what reads pieces of columns that can be cut, and refuses those of unequal lengths."""
+
+    def pieces(indices: Sequence[int]) -> Iterator[list[Array]]:
+        chosen = [columns[i] for i in indices]
+        check_lengths(name, headers, indices, [c.size for c in chosen])
+        for first in range(0, chosen[0].size, PIECE):
+            part = slice(first, min(first + PIECE, chosen[0].size))
+            yield [np.array(c[part], dtype=np.float64) for c in chosen]
+
+    return pieces
+
+
+def check_lengths(
+    name: str, headers: Sequence[str], indices: Sequence[int], sizes: Sequence[int]
+) -> None:
+    """Raise `InputError` where a column is not of the first one's length."""
+    for index, size in zip(indices, sizes, strict=True):
+        if size != sizes[0]:
+            raise InputError(
+                headers[index],
+                expected=f"of the length of {headers[indices[0]]} ({sizes[0]})",
+                found=str(size),
+                where=name,
+            )
+
+
 def column_reader(
     name: str, headers: Sequence[str], columns: Sequence[Array]
 ) -> Callable[[Sequence[int]], list[Array]]:
@@ -76,14 +133,7 @@ def column_reader(
 
     def read(indices: Sequence[int]) -> list[Array]:
         result = [np.array(columns[i], dtype=np.float64) for i in indices]
-        for index, column in zip(indices, result, strict=True):
-            if column.size != result[0].size:
-                raise InputError(
-                    headers[index],
-                    expected=f"of the length of {headers[indices[0]]} ({result[0].size})",
-                    found=str(column.size),
-                    where=name,
-                )
+        check_lengths(name, headers, indices, [column.size for column in result])
         return result
 
     return read

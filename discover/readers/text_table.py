@@ -22,15 +22,16 @@ from discover.readers.source import Book, Source
 from models.checks import Array, InputError, shown
 
 _LARGE = 16_000_000  # bytes from which threads pay
-_SPACES = " "  # stands for any run of blanks between columns
-_DELIMITERS = ("\t", ";", ",", _SPACES)
+SPACES = " "
+"""Stands for any run of blanks between columns."""
+_DELIMITERS = ("\t", ";", ",", SPACES)
 _MARKS = (b"#", b"%", b"//", b"'")
 _TRIED = 60  # lines that show what separates columns
 _BRACKETS = re.compile(r"\[[^\[\]]*\]|\([^()]*\)|\"[^\"]*\"")
 
 
 @dataclass(frozen=True)
-class _Text:
+class Text:
     """A file's lines."""
 
     data: bytes
@@ -76,6 +77,23 @@ def open_text(data: bytes, name: str) -> Book:
         On an empty or binary file or one without a table, and, on reading, rows of the wrong
         length or fields that are not numbers, with their line.
     """
+    text, rows, tables = laid_out(data, name)
+    parts = []
+    for number, layout in enumerate(tables, start=1):
+        part = layout.title or f"table {number}" if len(tables) > 1 else ""
+        parts.append(_source(text, rows, layout, f"{name} [{part}]" if part else name, part))
+    step = stated_step(note for layout in tables for note in layout.notes)
+    return Book(name, tuple(_with_step(part, step) for part in parts))
+
+
+def laid_out(data: bytes, name: str) -> tuple[Text, Rows, list[Layout]]:
+    """Return a file's lines, what each is, and where its tables lie.
+
+    Raises
+    ------
+    InputError
+        On an empty or binary file or one without a table.
+    """
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         try:
             data = data.decode("utf-16").encode()
@@ -89,13 +107,7 @@ def open_text(data: bytes, name: str) -> Book:
     if b"\0" in data[:4096]:
         raise content_error("text", "binary data", name)
     text, rows = _lines(data, name)
-    tables = find_tables(rows) or [_plain_layout(text, rows, name)]
-    parts = []
-    for number, layout in enumerate(tables, start=1):
-        part = layout.title or f"table {number}" if len(tables) > 1 else ""
-        parts.append(_source(text, rows, layout, f"{name} [{part}]" if part else name, part))
-    step = stated_step(note for layout in tables for note in layout.notes)
-    return Book(name, tuple(_with_step(part, step) for part in parts))
+    return text, rows, find_tables(rows) or [_plain_layout(text, rows, name)]
 
 
 def _with_step(source: Source, step: float | None) -> Source:
@@ -111,7 +123,7 @@ def _decoded(raw: bytes) -> str:
         return raw.decode("latin-1")
 
 
-def _lines(data: bytes, name: str) -> tuple[_Text, Rows]:
+def _lines(data: bytes, name: str) -> tuple[Text, Rows]:
     codes = np.frombuffer(data, dtype=np.uint8)
     ends = np.flatnonzero(codes == ord("\n")) + 1
     if not ends.size or ends[-1] != codes.size:
@@ -125,14 +137,14 @@ def _lines(data: bytes, name: str) -> tuple[_Text, Rows]:
     filled = np.flatnonzero(~blank & ~comment)
     if not filled.size and not comment.any():
         raise content_error("a header line and samples", "an empty file", name)
-    text = _Text(data, starts, "")
+    text = Text(data, starts, "")
     samples = np.flatnonzero(numeric)
     delimiter = _delimiter(text, samples if samples.size > 1 else filled, numbers=samples.size > 1)
-    text = _Text(data, starts, delimiter)
+    text = Text(data, starts, delimiter)
     return text, Rows(numeric, blank, comment, text.fields)
 
 
-def _delimiter(text: _Text, rows: np.ndarray, *, numbers: bool) -> str:
+def _delimiter(text: Text, rows: np.ndarray, *, numbers: bool) -> str:
     """Return what splits lines of numbers, or else any lines, into equally many fields."""
     some = np.linspace(0, rows.size - 1, min(rows.size, _TRIED)).astype(int)
     lines = [text.line(int(row)) for row in rows[some]]
@@ -151,7 +163,7 @@ def _delimiter(text: _Text, rows: np.ndarray, *, numbers: bool) -> str:
 
 
 def _split_line(line: str, delimiter: str) -> list[str]:
-    if delimiter == _SPACES:
+    if delimiter == SPACES:
         return _split_blanks(line)
     if '"' not in line:
         return [field.strip() for field in line.split(delimiter)]
@@ -175,7 +187,7 @@ def _split_blanks(line: str) -> list[str]:
     return fields
 
 
-def _plain_layout(text: _Text, rows: Rows, name: str) -> Layout:
+def _plain_layout(text: Text, rows: Rows, name: str) -> Layout:
     """Return the layout of a file in which no table stands out: header first, samples below."""
     filled = np.flatnonzero(~rows.blank & ~rows.comment)
     if not filled.size:
@@ -195,11 +207,9 @@ def _plain_layout(text: _Text, rows: Rows, name: str) -> Layout:
     return Layout(headers, {}, header, header + 1, rows.count, "", ())
 
 
-def _source(text: _Text, rows: Rows, layout: Layout, name: str, part: str) -> Source:
+def _source(text: Text, rows: Rows, layout: Layout, name: str, part: str) -> Source:
     body = memoryview(text.data)[text.starts[layout.first] : text.starts[layout.last]]
-    decimal = "," if text.delimiter != "," and b"," in bytes(body[:2000]) else "."
-    beyond = text.fields(layout.first)[len(layout.headers) :]  # empty after a delimiter at the end
-    headers = layout.headers + ("",) * (0 if any(beyond) else len(beyond))
+    headers, decimal = fields_of(text, layout)
     width = len(headers)
 
     def read(indices: Sequence[int]) -> list[Array]:
@@ -219,6 +229,15 @@ def _source(text: _Text, rows: Rows, layout: Layout, name: str, part: str) -> So
     )
 
 
+def fields_of(text: Text, layout: Layout) -> tuple[tuple[str, ...], str]:
+    """Return the header of every field of a table, and what parts its decimals."""
+    first, last = text.starts[layout.first], text.starts[layout.last]
+    some = text.data[first : min(last, first + 2000)]
+    decimal = "," if text.delimiter != "," and b"," in some else "."
+    beyond = text.fields(layout.first)[len(layout.headers) :]  # empty after a delimiter at the end
+    return layout.headers + ("",) * (0 if any(beyond) else len(beyond)), decimal
+
+
 def _samples(rows: Rows, layout: Layout) -> Iterator[int]:
     span = slice(layout.first, layout.last)
     return iter((np.flatnonzero(~(rows.blank[span] | rows.comment[span])) + layout.first).tolist())
@@ -230,7 +249,7 @@ def _read_fast(
     """Return the columns by a library, or None where the table is not regular."""
     names = [f"c{i}" for i in range(width)]
     wanted = [names[i] for i in indices]
-    if delimiter == _SPACES:
+    if delimiter == SPACES:
         return _read_blanks(body, names, wanted, decimal)
     try:
         table = pa_csv.read_csv(
@@ -266,7 +285,7 @@ def _read_blanks(
 
 
 def _read_slow(
-    text: _Text,
+    text: Text,
     rows: Rows,
     layout: Layout,
     headers: tuple[str, ...],

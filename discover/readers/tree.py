@@ -9,8 +9,15 @@ from typing import Any
 import numpy as np
 
 from discover.readers.sampling_note import stated_step
-from discover.readers.source import MOST_VALUES, Book, Source, column_reader
-from models.checks import Array, InputError
+from discover.readers.source import (
+    MOST_VALUES,
+    Book,
+    LongVector,
+    Source,
+    column_pieces,
+    column_reader,
+)
+from models.checks import InputError
 
 _WIDEST = 64  # columns of a matrix that may be channels
 _NESTED = (Mapping, list, np.ndarray)
@@ -119,7 +126,10 @@ def _vectors(leaves: list[Leaf]) -> tuple[list[Leaf], dict[tuple[str, ...], floa
     return vectors, notes
 
 
-def _numeric(value: Any) -> np.ndarray[Any, Any] | None:
+def _numeric(value: Any) -> Any:
+    """Return an array of numbers, or a long vector that stays in its file; None for others."""
+    if isinstance(value, LongVector):
+        return value
     try:
         array = np.asarray(value)
     except ValueError:  # lists of unequal lengths
@@ -129,7 +139,10 @@ def _numeric(value: Any) -> np.ndarray[Any, Any] | None:
     return array
 
 
-def _columns(name: str, array: np.ndarray[Any, Any]) -> Iterator[tuple[str, Array]]:
+def _columns(name: str, array: Any) -> Iterator[tuple[str, Any]]:
+    if not isinstance(array, np.ndarray):
+        yield name, array
+        return
     vector = array.squeeze()
     if vector.ndim == 1:
         yield name, vector
@@ -162,13 +175,17 @@ def _source(
     if waves:
         step = waves[0].step if all(w.step == waves[0].step for w in waves) else None
     named = [leaf.role for leaf in leaves]
+    columns = [leaf.value for leaf in leaves]
+    long = [c.size for c in columns if isinstance(c, LongVector)]
     return Source(
         name,
         headers,
-        column_reader(name, headers, [leaf.value for leaf in leaves]),
+        column_reader(name, headers, columns),
         part=part,
         units={i: leaf.unit for i, leaf in enumerate(leaves) if leaf.unit},
         roles={role: named.index(role) for role in named if role and named.count(role) == 1},
         step=step,
         start=waves[0].start if waves else 0.0,
+        rows=max(long, default=None),
+        pieces=column_pieces(name, headers, columns) if long else None,
     )

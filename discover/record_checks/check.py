@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -99,13 +99,21 @@ def check_record(observation: Observation) -> RecordCheck:
     """
     record = observation.record
     kind = classify(record)
+    if observation.kind == "sine" and record.long is not None:
+        start = kind.usable.start or 0
+        kind = replace(
+            kind,
+            usable=slice(start, record.samples),
+            period=1.0 / observation.frequency,
+            cycles=observation.duration * observation.frequency,
+        )
     measured = record.displacement is not None
     seen = compared_with(observation, np.zeros_like(observation.measured))
     return RecordCheck(
         file=record.file,
         held_out=record.held_out,
         kind=kind,
-        samples=record.time.size,
+        samples=record.samples,
         sampling_hz=1.0 / record.step,
         frequency_hz=kind.frequency,
         amplitude_m=kind.amplitude if measured else record.amplitude,

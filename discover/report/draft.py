@@ -37,7 +37,7 @@ def draft_document(draft: Draft, *, content_hash: str, written: str) -> dict[str
             {
                 "file": r.record.file,
                 "held_out": r.entry.held_out,
-                "samples": r.record.time.size,
+                "samples": r.record.samples,
                 "sampling_hz": 1.0 / r.record.step,
                 "columns": {
                     quantity: {

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from discover.motion_fit import Observation
-from discover.rows.force import force_at_samples
+from discover.rows.force import force_at_samples, misfit_power
 from discover.rows.record_rows import RecordRows
 from models.checks import Array
 from models.constitutive import ForceModel
@@ -35,7 +35,7 @@ class Accuracy:
     @property
     def samples(self) -> int:
         """Number of usable samples."""
-        return self.observation.measured.size
+        return self.observation.samples
 
     @property
     def relative_percent(self) -> float:
@@ -59,8 +59,18 @@ class Accuracy:
 
 
 def accuracy(observation: Observation, model: ForceModel) -> Accuracy:
-    """Return how a model's force compares with the measured one, sample by sample."""
-    return compared_with(observation, force_at_samples(observation, model))
+    """Return how a model's force compares with the measured one, sample by sample.
+
+    Of a record that is read in pieces the powers are of all samples, the force is at the first.
+    """
+    here = compared_with(observation, force_at_samples(observation, model))
+    if observation.record.long is None or observation.sums is None:
+        return here
+    return replace(
+        here,
+        error_power=misfit_power(observation, model),
+        force_power=observation.sums.power / observation.sums.samples,
+    )
 
 
 def compared_with(observation: Observation, force: Array) -> Accuracy:

@@ -32,7 +32,7 @@ def scales_of(rows: Sequence[RecordRows]) -> Scales:
         least_speed=min(speeds),
         force=peaks[-1],
         peaks=tuple(peaks),
-        duration=max(float(o.time[-1] - o.time[0]) for o in observations),
+        duration=max(o.duration for o in observations),
         omega=max(omegas),
         least_omega=max(min(omegas), 1e-12),
         tests=tuple(o.test for o in observations) if all(o.test for o in observations) else (),

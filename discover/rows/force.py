@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.motion_fit import Observation
+from discover.motion_fit import POINTS, Observation
 from discover.rows.record_rows import RecordRows
-from discover.rows.sine_rows import POINTS
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
@@ -203,3 +202,24 @@ def force_at_samples(observation: Observation, model: ForceModel) -> Array:
     motion = replace(observation.motion, test=test, sampling=sampling)
     whole = at_moments(steady(model).force(cycle), observation.time, observation.frequency)
     return whole + _drifting(model, motion, whole)
+
+
+def misfit_power(observation: Observation, model: ForceModel) -> float:
+    """Return the mean square (N^2) of all usable samples of a sine test less a model's force.
+
+    Raises
+    ------
+    ValueError
+        Where the observation has no sums of its samples.
+    """
+    sums = observation.sums
+    if sums is None or observation.at is None:
+        raise ValueError("the observation has no sums")
+    model = in_test(model, observation.test)
+    test, sampling = observation.test, observation.motion.step
+    cycle = replace(observation.cycle_of(POINTS), test=test, sampling=sampling)
+    force = np.broadcast_to(steady(model).force(cycle), sums.count.shape)
+    if any(drifts(t) for t in model.terms):
+        motion = replace(observation.at(sums.middles.ravel()), test=test, sampling=sampling)
+        force = force + _drifting(model, motion, force.ravel()).reshape(force.shape)
+    return sums.misfit(force) / sums.samples

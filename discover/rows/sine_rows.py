@@ -9,14 +9,11 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.sparse import csr_array
 
-from discover.motion_fit import Observation
+from discover.motion_fit import POINTS, Observation
 from discover.rows.record_rows import RecordRows
 from models.checks import Array, Indices
 from models.motion import Motion
 
-POINTS = 2048
-"""Of the grid over one cycle, on which terms are evaluated."""
-_PHASES, _STRETCHES = 256, 16  # cells into which a long record's samples are averaged
 _SLOW = 3  # order of slow change
 _MODULATED = 3  # harmonics whose size may change slowly
 _FEWEST_CYCLES = 3.0  # from which such a change is told from the harmonics
@@ -44,12 +41,10 @@ def sine_rows(observation: Observation) -> RecordRows:
     window, frequency = observation.windows[0], observation.frequency
     test, sampling = observation.test, observation.motion.step
     cycle = replace(observation.cycle_of(POINTS), test=test, sampling=sampling)
-    moments, cells = _cells(observation)
-    counts = np.asarray(cells.sum(axis=0)).ravel()
-    force = (observation.measured @ cells) / counts
-    duration = float(observation.time[-1] - observation.time[0])
+    motion, counts, force, on_cells = _cells(observation)
+    duration = observation.duration
     count = window.omega.size - 1
-    basis, order, lines = _basis(moments, frequency, count, duration)
+    basis, order, lines = _basis(motion.time, frequency, count, duration)
     weight = np.sqrt(counts)
     basis = _orthonormal(basis * weight[:, None])
     variance = _variance(observation, lines, order, count, duration, float(counts.sum()))
@@ -58,13 +53,11 @@ def sine_rows(observation: Observation) -> RecordRows:
     def of_motion(columns: Array) -> Array:
         return np.asarray(columns @ whitened)
 
-    between = _between(observation, POINTS)
-    on_cells = (between @ cells).multiply(1.0 / counts[None, :]).tocsr()
     size = np.sqrt(window.power * float(counts.sum()) / variance)
     phase = float(np.angle(_fundamental(observation.cycle_of(POINTS)))) + 0.5 * np.pi
     return RecordRows(
         observation=observation,
-        motion=replace(_motion(observation, moments), test=test, sampling=sampling),
+        motion=replace(motion, test=test, sampling=sampling),
         cycle=cycle,
         target=of_motion(force),
         size=size,
@@ -81,37 +74,17 @@ def _fundamental(cycle: Motion) -> complex:
     return complex(cycle.displacement @ turn)
 
 
-def _motion(observation: Observation, moments: Array) -> Motion:
-    if moments is observation.time or observation.at is None:
-        return observation.motion
-    return observation.at(moments)
+def _cells(observation: Observation) -> tuple[Motion, Array, Array, csr_array]:
+    """Return moments' motion (M,), the number of samples and the mean force (N) of each.
 
-
-def _cells(observation: Observation) -> tuple[Array, csr_array]:
-    """Return moments (M,), s, and what of each sample (N) is in each cell (N, M).
-
-    Samples of a long record that are near in phase and time are averaged: no row sees the
-    difference. In others each is its own cell.
+    And what each point of a cycle is of each, (G, M). Samples of a long record that are near in
+    phase and time are averaged: no row sees the difference. In others each is its own cell.
     """
-    time = observation.time
-    if time.size <= _PHASES * _STRETCHES or observation.at is None:
-        one = np.ones(time.size)
-        places = np.arange(time.size)
-        return time, csr_array((one, (places, places)), shape=(time.size, time.size))
-    late = (time - time[0]) / (time[-1] - time[0])
-    turned = np.mod(time * observation.frequency, 1.0)
-    stretch = np.minimum((late * _STRETCHES).astype(int), _STRETCHES - 1)
-    cell = stretch * _PHASES + np.minimum((turned * _PHASES).astype(int), _PHASES - 1)
-    _, cell = np.unique(cell, return_inverse=True)
-    number = int(cell.max()) + 1
-    # The middle of a cell in phase, in a cycle near its mean time.
-    counts = np.bincount(cell, minlength=number)
-    mean_phase = np.bincount(cell, turned, number) / counts
-    mean_time = np.bincount(cell, time, number) / counts
-    cycles = np.round(mean_time * observation.frequency - mean_phase)
-    moments = (cycles + mean_phase) / observation.frequency
-    one = np.ones(time.size)
-    return moments, csr_array((one, (np.arange(time.size), cell)), shape=(time.size, number))
+    sums = observation.sums
+    if sums is None or observation.at is None:
+        count = np.ones(observation.time.size)
+        return observation.motion, count, observation.measured, _between(observation, POINTS)
+    return observation.at(sums.moments), sums.counts, sums.means, sums.on_cycle
 
 
 def _basis(

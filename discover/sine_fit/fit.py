@@ -83,13 +83,13 @@ def fit_sine(
     if frequency is None:
         f = _start(tau, z, duration)
         short_tau, short_z = _block_means(tau, z, round(t.size / (duration * f)) // 64)
-        orders = _allowed(min(harmonics, 3), f, short_tau.size, duration)
+        orders = allowed_harmonics(min(harmonics, 3), f, short_tau.size, duration)
         f = _refine(short_tau, short_z, f, orders, settled=1e-6)
     else:
         f = number("frequency", frequency, above=0.0, where=where)
-    orders = _allowed(harmonics, f, t.size, duration)
+    orders = allowed_harmonics(harmonics, f, t.size, duration)
     if found and len(orders) > 3:
-        orders_short = _allowed(harmonics, f, short_tau.size, duration)
+        orders_short = allowed_harmonics(harmonics, f, short_tau.size, duration)
         f = _refine(short_tau, short_z, f, orders_short, settled=1e-6)
     solution = Solution(tau, z, f, orders, with_frequency=False)
     kept, keep_trend = solution.significant()
@@ -100,7 +100,9 @@ def fit_sine(
     return solution.result(middle, offset, scale)
 
 
-def _allowed(harmonics: int, frequency: float, size: int, duration: float) -> tuple[int, ...]:
+def allowed_harmonics(
+    harmonics: int, frequency: float, size: int, duration: float
+) -> tuple[int, ...]:
     """Return the harmonics that the mean sampling and the number of samples resolve."""
     nyquist = 0.5 * (size - 1) / duration
     highest = min(harmonics, int(0.9 * nyquist / frequency), (size - 4) // 4)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -96,6 +96,37 @@ def frequency_column(tau: Array, design: Array, beta: Array, orders: Sequence[in
     return np.asarray(column * tau)
 
 
+def significant(
+    beta: Array, variance: Array, local: Mapping[int, float], orders: Sequence[int], duration: float
+) -> tuple[tuple[int, ...], bool]:
+    """Return the harmonics that stand out of the noise, and whether the trend does.
+
+    Parameters
+    ----------
+    beta, variance : ndarray, shape (2 + 2 H,)
+        Coefficients and the inverse normal matrix's diagonal: mean, harmonics, trend.
+    local : mapping
+        The noise's density beside each harmonic, and beside the mean (0), as a white variance.
+    orders : sequence of int
+        The harmonics.
+    duration : float
+        s.
+    """
+    kept = [1]
+    largest = float(np.hypot(*beta[1:3]))
+    for i, k in enumerate(orders[1:], start=1):
+        pair = beta[1 + 2 * i : 3 + 2 * i]
+        expected = 0.5 * float(variance[1 + 2 * i : 3 + 2 * i].sum()) * local[k]
+        size = float(pair @ pair)
+        if size > 2.0 * np.log(1e3) * expected and size > (_NEGLIGIBLE * largest) ** 2:
+            kept.append(k)
+    index = 1 + 2 * len(orders)
+    slope = float(beta[index])
+    error = np.sqrt(float(variance[index]) * local[0])
+    reach = abs(slope) * duration
+    return tuple(kept), bool(abs(slope) > 4.0 * error and reach > _NEGLIGIBLE * largest)
+
+
 class Solution:
     """A linear fit at one frequency, with what its residual says about its coefficients."""
 
@@ -146,19 +177,8 @@ class Solution:
 
     def significant(self) -> tuple[tuple[int, ...], bool]:
         """Return the harmonics that stand out of the noise, and whether the trend does."""
-        kept = [1]
-        largest = float(np.hypot(*self.beta[1:3]))
-        for i, k in enumerate(self.orders[1:], start=1):
-            pair = self.beta[1 + 2 * i : 3 + 2 * i]
-            variance = 0.5 * float(self.variance[1 + 2 * i : 3 + 2 * i].sum()) * self.local[k]
-            size = float(pair @ pair)
-            if size > 2.0 * np.log(1e3) * variance and size > (_NEGLIGIBLE * largest) ** 2:
-                kept.append(k)
-        index = 1 + 2 * len(self.orders)
-        slope = float(self.beta[index])
-        error = np.sqrt(float(self.variance[index]) * self.local[0])
-        reach = abs(slope) * float(self.tau[-1] - self.tau[0])
-        return tuple(kept), bool(abs(slope) > 4.0 * error and reach > _NEGLIGIBLE * largest)
+        duration = float(self.tau[-1] - self.tau[0])
+        return significant(self.beta, self.variance, self.local, self.orders, duration)
 
     def result(self, middle: float, offset: float, scale: float) -> SineFit:
         """Return the fit in the record's own time and unit."""

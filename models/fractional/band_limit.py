@@ -127,8 +127,10 @@ def band_limited_derivative(
         centred[:, :fitted][:, ::-1], fit, ratio
     )[:, ::-1]
     frequency = scipy.fft.rfftfreq(length, step)
+    frequency = frequency[: np.searchsorted(frequency, TRANSITION * limit) + 1]
     factors = harmonic_factors(alpha, 2.0 * np.pi * frequency) * low_pass_gain(frequency, limit)
-    spectrum = scipy.fft.rfft(extended, axis=-1)
+    # Beyond them nothing passes.
+    spectrum = scipy.fft.rfft(extended, axis=-1)[:, : frequency.size]
     out = np.empty((alpha.size, *rows.shape))
     for k in range(alpha.size):
         out[k] = scipy.fft.irfft(factors[k] * spectrum, n=length, axis=-1)[:, :samples]

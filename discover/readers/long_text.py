@@ -1,0 +1,91 @@
+"""CSV and TSV that is too long to be held: its layout by its first lines, its columns in pieces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pa_csv
+
+from discover.readers.arrow_values import doubles
+from discover.readers.content import content_error
+from discover.readers.lvm import is_lvm, open_lvm
+from discover.readers.sampling_note import stated_step
+from discover.readers.source import LONG, Book, Source, single
+from discover.readers.text_table import SPACES, fields_of, laid_out, open_text
+from models.checks import Array
+
+_HEAD = 2**20  # bytes that show the layout
+_PIECE = 2**20  # bytes; some tens of them are read ahead
+_WIDE_BOM = (b"\xff\xfe", b"\xfe\xff")
+
+
+def open_long_text(path: Path, name: str) -> Book:
+    """Open text with columns; of a long one that is regular, columns are read in pieces.
+
+    Regular are lines of equally many fields between tabs, semicolons or commas, below one header,
+    to the end of the file. Any other text is read whole, as by `open_text`.
+
+    Raises
+    ------
+    InputError
+        As of `open_text`; on reading pieces, for a line that is not regular.
+    """
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    whole = open_lvm if is_lvm(head) else open_text
+    lines = _lines(path)
+    if lines <= LONG or whole is open_lvm or head[:2] in _WIDE_BOM or b"\n" not in head:
+        return whole(path.read_bytes(), name)
+    text, rows, tables = laid_out(head[: head.rindex(b"\n") + 1], name)
+    layout = tables[0]
+    regular = len(tables) == 1 and text.delimiter != SPACES and layout.last == rows.count
+    if not regular or not layout.first:
+        return whole(path.read_bytes(), name)
+    headers, decimal = fields_of(text, layout)
+    names = [f"c{i}" for i in range(len(headers))]
+
+    def pieces(indices: Sequence[int]) -> Iterator[list[Array]]:
+        wanted = [names[i] for i in indices]
+        try:
+            with pa_csv.open_csv(
+                path,
+                read_options=pa_csv.ReadOptions(
+                    column_names=names, skip_rows=layout.first, block_size=_PIECE,
+                    use_threads=False,
+                ),
+                parse_options=pa_csv.ParseOptions(delimiter=text.delimiter),
+                convert_options=pa_csv.ConvertOptions(
+                    include_columns=wanted,
+                    column_types=dict.fromkeys(wanted, pa.float64()),
+                    decimal_point=decimal,
+                ),
+            ) as reader:
+                for batch in reader:
+                    yield [doubles(pa.chunked_array([batch.column(key)])) for key in wanted]
+        except (pa.ArrowException, OSError) as error:
+            expected = "one regular table, as so long a text is read in pieces"
+            raise content_error(expected, error, name) from None
+
+    def read(indices: Sequence[int]) -> list[Array]:
+        return [np.concatenate(parts) for parts in zip(*pieces(indices), strict=True)]
+
+    return single(
+        Source(
+            name, headers, read, lambda row: f"line {row + layout.first + 1}",
+            units=layout.units, step=stated_step(layout.notes), rows=lines - layout.first,
+            pieces=pieces,
+        )
+    )  # fmt: skip
+
+
+def _lines(path: Path) -> int:
+    """Return the number of a file's lines, the last of which need not end."""
+    count, last = 0, b"\n"
+    with path.open("rb") as file:
+        while data := file.read(_PIECE):
+            count += data.count(b"\n")
+            last = data[-1:]
+    return count + int(last != b"\n")
