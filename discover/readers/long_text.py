@@ -18,6 +18,7 @@ from discover.readers.text_table import SPACES, fields_of, laid_out, open_text
 from models.checks import Array
 
 _HEAD = 2**20  # bytes that show the layout
+_LEAST = 2  # bytes of a line: a digit and its end
 _PIECE = 2**20  # bytes; some tens of them are read ahead
 _WIDE_BOM = (b"\xff\xfe", b"\xfe\xff")
 
@@ -36,6 +37,8 @@ def open_long_text(path: Path, name: str) -> Book:
     with path.open("rb") as file:
         head = file.read(_HEAD)
     whole = open_lvm if is_lvm(head) else open_text
+    if path.stat().st_size <= _LEAST * LONG:
+        return whole(path.read_bytes(), name)
     lines = _lines(path)
     if lines <= LONG or whole is open_lvm or head[:2] in _WIDE_BOM or b"\n" not in head:
         return whole(path.read_bytes(), name)

@@ -109,7 +109,7 @@ def test_only_the_effects_asked_for_are_named():
     assert found.verdict != "closed"
 
 
-def test_a_hum_between_the_harmonics_is_not_given_a_name():
+def test_a_law_that_no_term_has_is_not_given_a_name():
     def law(t, x, v, a):
         return device(t, x, v, a) + 3e5 * x * v * v
 
