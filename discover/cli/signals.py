@@ -5,9 +5,17 @@ What stands here is loaded before anything else, so it imports next to nothing.
 
 from __future__ import annotations
 
+import _thread
 import signal
+import sys
+import time
+
+TYPE_CHECKING = False  # as of typing, whose import costs the first interrupts
+if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
 
 _NUMBERS = (signal.SIGINT, signal.SIGTERM)
+_PAUSE = 0.01  # s
 _state = {"leaving": False}
 
 
@@ -21,12 +29,26 @@ def _interrupt(number: int, frame: object) -> None:
         raise KeyboardInterrupt
 
 
+def _swallowed(told: UnraisableHookArgs) -> None:
+    """Send an interrupt again that came where Python lets nothing through, as in a finaliser."""
+    if issubclass(told.exc_type, KeyboardInterrupt):
+        _thread.start_new_thread(_again, ())
+    else:
+        sys.__unraisablehook__(told)
+
+
+def _again() -> None:
+    time.sleep(_PAUSE)  # the finaliser has to end first
+    _thread.interrupt_main()
+
+
 def begin() -> None:
     """Turn SIGINT and SIGTERM into `KeyboardInterrupt`.
 
     Signals that whoever started the program had it ignore stay ignored.
     """
     _state["leaving"] = False
+    sys.unraisablehook = _swallowed
     for number in _NUMBERS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _interrupt)

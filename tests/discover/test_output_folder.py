@@ -237,6 +237,33 @@ def test_an_interrupt_ends_with_130_or_comes_after_all_is_written(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_an_interrupt_inside_a_finaliser_is_not_lost() -> None:
+    program = """
+import signal, time
+from discover.cli import signals
+
+class Dying:
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+
+signals.begin()
+try:
+    Dying()
+    time.sleep(20)
+    print("lost")
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert (done.stdout, done.stderr) == ("interrupted\n", "")
+
+
 @pytest.mark.parametrize("name", ["models.py", "models/__init__.py"])
 def test_a_models_of_the_users_own_is_named_and_not_run(tmp_path: Path, name: str) -> None:
     mine = tmp_path / name
