@@ -12,7 +12,6 @@ from discover.bands.search import Banded, BandSearch
 from models.checks import Array
 
 _PLACES, _WIDTHS = 61, np.geomspace(0.1, 4.0, 16)
-_LOG_2 = float(np.log(2.0))
 
 
 @dataclass(frozen=True)
@@ -20,7 +19,8 @@ class Boundary:
     """Where one band ends and the next begins."""
 
     value: float
-    """Of the coordinate: the geometric middle of the bracket, or where models share alike."""
+    """Of the coordinate: the geometric middle of the bracket, or where models share alike if the
+    search found that the change is gradual."""
     bracket: tuple[float, float]
     """Coordinates of the tests on either side."""
     interval: tuple[float, float]
@@ -51,10 +51,10 @@ def _boundary(search: BandSearch, banded: Banded, lower: int) -> Boundary:
     last = min(int(np.searchsorted(total, 0.975)), kept.size - 1)
     interval = (min(float(ends[first, 0]), bracket[0]), max(float(ends[last, 1]), bracket[1]))
     middle = float(np.sqrt(bracket[0] * bracket[1]))
-    soft = _gradual(few, banded, lower, whole, values)
-    if soft is None or soft[0] + _LOG_2 < float(logsumexp(found)) - np.log(len(found)):
+    own = banded.shares[lower]
+    if not np.any((own > 0.0) & (own < whole[lower])):
         return Boundary(middle, bracket, interval, None)
-    _, place, width, near = soft
+    place, width, near = _gradual(few, banded, lower, whole, values)
     low, high = min(interval[0], near[0]), max(interval[1], near[1])
     return Boundary(place, bracket, (low, high), width)
 
@@ -69,12 +69,10 @@ def _merged(shares: Array, lower: int) -> Array:
 
 def _gradual(
     search: BandSearch, banded: Banded, lower: int, whole: Array, values: Array
-) -> tuple[float, float, float, tuple[float, float]] | None:
-    """Return the log evidence of a gradual change, its place, width, and the place's interval."""
+) -> tuple[float, float, tuple[float, float]]:
+    """Return the place of a gradual change, its width, and the place's interval."""
     inside = values[whole[lower] > 0.5]
     low, high = np.log(inside.min()), np.log(inside.max())
-    if not high > low:
-        return None
     places = np.exp(np.linspace(low, high, _PLACES)[1:-1])
     place, width = (g.ravel() for g in np.meshgrid(places, _WIDTHS))
     both = gradual(values, place, width) * whole[lower]
@@ -90,9 +88,8 @@ def _gradual(
     total = np.cumsum(np.exp(of_place - logsumexp(of_place)))
     first = int(np.searchsorted(total, 0.025))
     last = min(int(np.searchsorted(total, 0.975)), places.size - 1)
-    value = float(logsumexp(found)) - float(np.log(found.size))
     near = float(places[first]), float(places[last])
-    return value, float(place[best]), float(width[best]), near
+    return float(place[best]), float(width[best]), near
 
 
 def line_evidence(search: BandSearch, banded: Banded, upper: Array) -> Array:

@@ -9,13 +9,12 @@ import numpy as np
 
 from discover.posterior.sheet import Sheet
 from discover.rows import RecordForces
-from discover.rows.columns import force_columns, moved
+from discover.rows.columns import finite_slope, force_columns, moved
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import Scales
 from models.terms.between_tests import ONLY
 
-_STEEPEST = 1e100  # of a slope in rows: steeper ones have no square, and tell nothing
 _LATEST = 8  # rows of changed models that are kept a record: a slope changes few records
 
 
@@ -235,6 +234,5 @@ class Evaluator:
                 change = self.unit(there) - self.unit(placed.fitted)
                 found.append(placed.fitted.coefficient * share * change / step)
                 continue
-            change = (self.force(other) - at) / step
-            found.append(np.where(np.abs(change) < _STEEPEST, change, 0.0))
+            found.append(finite_slope((self.force(other) - at) / step))
         return np.stack(found, axis=1) if found else np.zeros((at.shape[0], 0, at.shape[1]))

@@ -14,6 +14,7 @@ from models.constitutive import FittedTerm, ForceModel
 from models.motion import Motion
 from models.terms import Scales, Term
 
+_STEEPEST = 1e100  # N over the unit of a coefficient, or of a shape parameter
 _STEP = 1e-3  # of a shape parameter's range, over which its slope is taken
 
 
@@ -82,6 +83,11 @@ def moved(
     return {**shape, name: value + step}, step
 
 
+def finite_slope(change: Array) -> Array:
+    """Return a slope in rows, 0 where it is too steep to have a square: it tells nothing there."""
+    return np.where(np.abs(change) < _STEEPEST, change, 0.0)
+
+
 @dataclass(frozen=True)
 class Behind:
     """Columns of terms as changes of motion and of force pass them on: their slopes there."""
@@ -110,7 +116,7 @@ class Behind:
             else:
                 step = _STEP
                 whole = _grown(model, t, step)
-            found[k] = (forces.of_model(whole) - before) / step
+            found[k] = finite_slope((forces.of_model(whole) - before) / step)
         return found
 
 
