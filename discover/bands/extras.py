@@ -99,12 +99,14 @@ class Device:
     """Along which bands may lie: "speed", "frequency"."""
     bands: int | None
     """Number that is asked for; None lets the evidence choose."""
+    seed: int = 0
+    """Of what is drawn."""
 
     @cached_property
     def assessor(self) -> Assessor:
         """What assesses models of its records."""
         space, curve = space_of(self.rows, self.friction)
-        return Assessor(space, Evaluator(space.sheet, space.scales), curve)
+        return Assessor(space, Evaluator(space.sheet, space.scales), curve, seed=self.seed)
 
 
 def found(device: Device) -> Found:

@@ -109,10 +109,10 @@ def term_ids(text: str, *, where: str = "--model") -> tuple[str, ...]:
     return ids
 
 
-def assessor_of(rows: Sequence[RecordRows]) -> Assessor:
+def assessor_of(rows: Sequence[RecordRows], seed: int = 0) -> Assessor:
     """Return what assesses models of records, whose friction reverses over a speed."""
     space, curve = space_of(rows, TERMS[FRICTION])
-    return Assessor(space, Evaluator(space.sheet, space.scales), curve, path=False)
+    return Assessor(space, Evaluator(space.sheet, space.scales), curve, named=False, seed=seed)
 
 
 def fit_terms(assessor: Assessor, ids: Sequence[str]) -> Assessed:
@@ -142,7 +142,7 @@ def in_few_curves(
     reversal, model = with_few_curves(assessor, found, best)
     terms: list[FittedTerm] = []
     for placed in model.terms:
-        whole = reversal is not None and placed.fitted.id == reversal.terms[0].id
+        whole = reversal is not None and placed.fitted.id == reversal.name
         own = reversal.terms if whole and reversal is not None else (placed.fitted,)
         terms += [] if placed.held else own
     return model, tuple(terms)
@@ -184,6 +184,7 @@ def prepare_baseline(
     *,
     fixed: bool,
     device: Device | None = None,
+    seed: int = 0,
 ) -> Baseline:
     """Return the baseline on its records.
 
@@ -199,6 +200,8 @@ def prepare_baseline(
         Hold the baseline's coefficients.
     device : Device, optional
         Where ``sfoim`` parts its bands.
+    seed : int
+        Of what is drawn.
 
     Raises
     ------
@@ -211,7 +214,7 @@ def prepare_baseline(
     first = model == "sfoim"
     if model == "sfoim":
         model = fitted_sfoim(rows, device, along=coordinate_of, fit=_fitted)
-    assessor = assessor_of(free_rows)
+    assessor = assessor_of(free_rows, seed)
     if isinstance(model, str):
         found = fit_terms(assessor, term_ids(model))
         whole = _predicting(assessor, found)

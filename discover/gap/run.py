@@ -62,7 +62,7 @@ def close_gap(
         Ids that may be named; the whole vocabulary where not given, with what is added by
         `models.terms.own_terms`.
     seed : int
-        Kept in the document. Nothing in the search is random.
+        Of the draws of records by which effects are compared that leave more than noise.
     jobs : int
         Threads for reading the records.
     tell : callable, optional
@@ -99,7 +99,9 @@ def close_gap(
         one_of("effect", name, known, where="effects")
     with threadpool_limits(1):  # its matrices are small: more threads take longer
         observations = observe_all(campaign.records, jobs)
-        baseline = prepare_baseline(observations, model, fixed=fixed, device=campaign.device)
+        baseline = prepare_baseline(
+            observations, model, fixed=fixed, device=campaign.device, seed=seed
+        )
         return _answer(campaign, baseline, search(baseline, chosen, tell=tell), seed)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from discover.gap.baseline import Baseline, in_few_curves
 from discover.posterior.assess import Assessed
 from discover.posterior.grow import Candidate, Step, grown
-from discover.posterior.left_out import left_out
+from discover.posterior.left_out import is_less, left_out
 from discover.posterior.model import Composite
 from discover.rows import Accuracy, accuracy, pooled_percent
 from models.constitutive import FittedTerm, ForceModel
@@ -182,11 +182,13 @@ def _given(baseline: Baseline) -> Stage:
 def _accepted(baseline: Baseline, here: Stage, step: Step) -> tuple[Step, tuple[str, ...]]:
     """Return a step without what is more probable but predicts what is not fitted worse."""
     refused: list[str] = []
+    alone = next(c.left for c in step.candidates if not c.id)
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
             break
         was, now = here.unseen_gap, stage(baseline, candidate.assessed).unseen_gap
-        if was is None or now is None or now < was:
+        less = candidate.left is None or alone is None or is_less(candidate.left, alone)
+        if less and (was is None or now is None or now < was):
             break
         refused.append(candidate.id)
     return step.without(refused), tuple(refused)

@@ -61,13 +61,20 @@ class Assessor:
     """Of models."""
     friction: Part | None
     """Friction with all its curves; None where models hold none."""
-    path: bool = True
-    """Whether curves count that remember the path."""
+    named: bool = True
+    """Whether curves of friction count that have a name among effects."""
+    seed: int = 0
+    """Of what is drawn."""
+
+    @property
+    def may_leave_out(self) -> bool:
+        """True where there are several records, or several parts of one."""
+        return len(self.space.sheet.units) > 1
 
     @cached_property
     def curve(self) -> Part | None:
         """Departures of friction's curve."""
-        return None if self.friction is None else departures(self.friction, path=self.path)
+        return None if self.friction is None else departures(self.friction, named=self.named)
 
     @cached_property
     def coarse(self) -> Evaluator:

@@ -1,16 +1,23 @@
-"""One more term: which one, if any, makes the records more probable."""
+"""One more term: which one, if any, makes the records more probable.
+
+Where a term leaves but noise, evidence decides. Where none does, no model is right, and evidence
+is sure of whichever is a little less wrong. Then the terms that make the records more probable
+are compared by how well each record is predicted from the others.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import logsumexp
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.catalogue import trials_of
+from discover.posterior.left_out import left_out, predicts_best
 from discover.posterior.weigh import Gain, gains
+from models.checks import Array
 from models.constitutive import FittedTerm
 from models.terms import TERMS
 
@@ -35,6 +42,8 @@ class Candidate:
     """The model with it; None where it was weighed in a straight line only."""
     count: int = 0
     """Number of terms that were added."""
+    left: Array | None = None
+    """What it leaves of each record, predicted by the others; None where evidence decides."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +52,8 @@ class Step:
 
     candidates: tuple[Candidate, ...]
     """Most probable first; the model as it is among them."""
+    seed: int = 0
+    """Of the draws of records."""
 
     @property
     def best(self) -> Candidate:
@@ -51,14 +62,31 @@ class Step:
 
     def without(self, ids: Collection[str]) -> Step:
         """Return the step without some candidates, refused as they do not predict."""
-        return Step(tuple(c for c in self.candidates if c.id not in ids))
+        return _ordered([c for c in self.candidates if c.id not in ids], self.seed)
 
     @property
     def probabilities(self) -> dict[str, float]:
         """Of every id, and of "" for the model as it is."""
-        values = np.array([c.value for c in self.candidates])
-        shares = np.exp(values - logsumexp(values))
-        return {c.id: float(p) for c, p in zip(self.candidates, shares, strict=True)}
+        return _probabilities(self.candidates, self.seed)
+
+
+def _ordered(candidates: Sequence[Candidate], seed: int) -> Step:
+    """Return a step with the most probable first; the model as it is before its equals."""
+    known = _probabilities(candidates, seed)
+    order = sorted(candidates, key=lambda c: (-known[c.id], bool(c.id), -c.value))
+    return Step(tuple(order), seed)
+
+
+def _probabilities(candidates: Sequence[Candidate], seed: int) -> dict[str, float]:
+    """Return the probability of each by evidence, or by how well it predicts."""
+    weighed = {c.id: c.left for c in candidates if c.left is not None}
+    if weighed:
+        shares = predicts_best(list(weighed.values()), seed)
+        known = {name: float(p) for name, p in zip(weighed, shares, strict=True)}
+        return {c.id: known.get(c.id, 0.0) for c in candidates}
+    values = np.array([c.value for c in candidates])
+    shares = np.exp(values - logsumexp(values))
+    return {c.id: float(p) for c, p in zip(candidates, shares, strict=True)}
 
 
 def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
@@ -82,7 +110,17 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
         found += _tried(assessor, now, chosen, len(ids))
-    return Step(tuple(sorted(found, key=lambda c: -c.value)))
+    if not any(c.assessed.quiet for c in found if c.assessed):
+        found = [_predicting(assessor, c) for c in found]
+    return _ordered(found, assessor.seed)
+
+
+def _predicting(assessor: Assessor, candidate: Candidate) -> Candidate:
+    """Return a candidate with what it leaves of records left out, where there are enough."""
+    if candidate.assessed is None or not assessor.may_leave_out:
+        return candidate
+    best = assessor.predicting(candidate.assessed)
+    return replace(candidate, left=left_out(assessor, best)[1])
 
 
 def _simulated(identifier: str) -> bool:
@@ -121,11 +159,16 @@ def _tried(
 def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:
     """Return a term beside the model, fitted from its best shapes."""
     impacts = starts[0].trial.terms[0].term.impacts is not None
+    evaluator = assessor.coarse if impacts else assessor.evaluator
     begun = []
     start = now.place.towards(assessor.space.quiet)
-    chosen = _starting(starts)
-    for gain in chosen:
-        model = now.model.plus(*_begun(gain))
+    chosen = [
+        (gain, model) for gain in _starting(starts)
+        if np.all(np.isfinite(evaluator.force(model := now.model.plus(*_begun(gain)))))
+    ]
+    if not chosen:  # at the size at which it would gain most it has no finite force
+        return Candidate(starts[0].trial.id, now.value, None)
+    for gain, model in chosen:
         steps = _FEW_STEPS if len(chosen) > 1 else _STEPS
         one = assessor.assess(model, start, iterations=steps, coarse=impacts)
         begun.append((one, gain))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,8 +27,10 @@ _ENOUGH = 0.05  # of a row's noise, that these may leave of the whole curve
 class Reversal:
     """Friction by its curve."""
 
+    name: str
+    """Id of the term that it is."""
     terms: tuple[FittedTerm, ...]
-    """Few curves that together make it."""
+    """Few curves that together make it: its own, and of terms that need it."""
     follows: str
     """"path" where it turns over a displacement, "motion" over a speed."""
     sure: float
@@ -38,6 +41,11 @@ class Reversal:
     """95 %."""
     differs: float
     """Standard deviation between records, over the friction."""
+
+    @property
+    def sliding(self) -> float:
+        """N, of its own curves: those of others fade away from its reversal."""
+        return sum(t.coefficient for t in self.terms if t.id == self.name)
 
 
 def with_few_curves(
@@ -53,18 +61,19 @@ def with_few_curves(
     model, space = predicting.model, predicting.space
     if found is None or predicting is assessed:
         return found, model
-    name = found.terms[0].id
+    name = found.name
     at = next(i for i, p in enumerate(model.terms) if p.fitted.id == name)
     whole, (first, *more) = model.terms[at], found.terms
     terms = [replace(p, fitted=first) if i == at else p for i, p in enumerate(model.terms)]
     wide = Composite((*terms, *(replace(whole, fitted=t) for t in more)))
-    free = [n for n in wide.numbers if n.shape is None or wide.terms[n.term].fitted.id != name]
+    given = (at, *range(len(terms), len(wide.terms)))
+    free = [n for n in wide.numbers if n.shape is None or n.term not in given]
     sizes = predicting.place.sizes(space.own_unit)
     best = fitted(space, assessor.evaluator, wide, sizes, None, numbers=free).model
-    parts = [best.terms[i].fitted for i in (at, *range(len(terms), len(best.terms)))]
-    total = sum(t.coefficient for t in parts)
-    kept = tuple(t for t in parts if t.coefficient > _NOTHING * total) or (parts[0],)
-    own = FittedTerm(name, total, whole.fitted.shape)
+    parts = [best.terms[i].fitted for i in given]
+    least = _NOTHING * sum(t.coefficient for t in parts)
+    kept = tuple(t for t in parts if t.coefficient > least) or (parts[0],)
+    own = FittedTerm(name, replace(found, terms=kept).sliding, whole.fitted.shape)
     aligned = [
         replace(whole, fitted=own) if i == at else p
         for i, p in enumerate(best.terms[: len(terms)])
@@ -102,19 +111,19 @@ def reversal_of(
     plain = space.sheet.stack([space.columns_of(r, [one]) for r in space.sheet.rows])[:, 0]
     columns = space.columns[:, curve.columns]
     whole = np.concatenate([columns[:, :1], columns[:, 1:] + columns[:, :1]], axis=1)
-    places = {tuple(t.shape.items()): k for k, t in enumerate(curve.terms)}
+    departed = np.searchsorted(curve.columns, own.columns)
     total = main.coefficient * plain
-    for w, t in zip(departing, own.terms, strict=True):
-        total = total + w * (whole[:, places[tuple(t.shape.items())]] - whole[:, 0])
-    terms = _few(whole, total, curve)
+    total = total + np.einsum("k,ukr->ur", departing, whole[:, departed] - whole[:, :1])
+    some = [k for k, t in enumerate(curve.terms) if t.id == curve.id or k in departed]
+    terms = _few(whole[:, some], total, [curve.terms[k] for k in some])
     without = left + main.coefficient * plain
     sizes = assessed.place.sizes(space.own_unit)
     follows, sure, size, interval = _turning(space, sizes, without, whole, curve)
-    friction = max(sum(abs(t.coefficient) for t in terms), 1e-300)
-    return Reversal(terms, follows, sure, size, interval, sizes.friction / friction)
+    found = Reversal(curve.id, terms, follows, sure, size, interval, 0.0)
+    return replace(found, differs=sizes.friction / max(found.sliding, 1e-300))
 
 
-def _few(whole: Array, total: Array, curve: Part) -> tuple[FittedTerm, ...]:
+def _few(whole: Array, total: Array, curves: Sequence[FittedTerm]) -> tuple[FittedTerm, ...]:
     """Return the fewest curves, with positive shares, that leave next to nothing of the whole."""
     flat = whole.transpose(1, 0, 2).reshape(whole.shape[1], -1)
     goal = total.ravel()
@@ -129,9 +138,9 @@ def _few(whole: Array, total: Array, curve: Part) -> tuple[FittedTerm, ...]:
         if best.misfit < _ENOUGH * goal.size:
             break
     if chosen is None:
-        return (FittedTerm(curve.id, 0.0, curve.terms[0].shape),)
+        return (replace(curves[0], coefficient=0.0),)
     return tuple(
-        FittedTerm(curve.id, float(c), curve.terms[i].shape)
+        replace(curves[i], coefficient=float(c))
         for i, c in zip(chosen.indices, chosen.coefficients, strict=True)
     )
 
@@ -148,11 +157,10 @@ def _turning(
     grown = 1.0 + size**2 * power
     values = 0.5 * (size * gram[:-1, -1]) ** 2 / grown - 0.5 * np.log(grown)
     kinds: dict[str, list[int]] = {}
-    widths: list[float] = []
+    widths = [_width(t) for t in curve.terms]
     for k, t in enumerate(curve.terms):
-        own = _width(t)
-        widths.append(own)
-        kinds.setdefault(t.term.remembers(t.shape), []).append(k)
+        if t.id == curve.id:
+            kinds.setdefault(t.term.remembers(t.shape), []).append(k)
     means = {
         kind: float(logsumexp(values[some])) - float(np.log(len(some)))
         for kind, some in kinds.items()

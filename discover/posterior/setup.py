@@ -13,7 +13,7 @@ from discover.rows import RecordRows
 from discover.rows.columns import force_columns, scales_of
 from models.checks import Array
 from models.constitutive import FittedTerm
-from models.terms import Term
+from models.terms import Term, curves_of
 
 _OWN = (0.1, 0.5, 0.9)
 """Shares of a term's curves, in their order, at which one may be a unit's own."""
@@ -43,17 +43,16 @@ def space_of(
         What models shall make, where not the measured force.
     """
     scales = scales_of(rows)
-    shapes = term.curves(scales) if term.curves is not None else [term.shape({})]
-    units = [FittedTerm(term.id, 1.0, dict(s)) for s in shapes]
+    units = [FittedTerm(name, 1.0, dict(s)) for name, s in curves_of(term, scales)]
     blocks = [columns_of(r, units) for r in rows]
     shown = rows
     if targets is not None:
         shown = [replace(r, target=t) for r, t in zip(rows, targets, strict=True)]
     sheet = sheet_of(shown, blocks)
-    own = _own(sheet, blocks)
+    own = _own(sheet, blocks, units)
     empty = np.zeros((len(sheet.units), 0, sheet.target.shape[1]))
     space = Space(sheet, scales, empty, own, float(sheet.scale(own[:, :1])[0]), columns_of)
-    return space, curve_part(space, blocks, term)
+    return space, curve_part(space, blocks, term, units)
 
 
 def behind(space: Space, curve: Part, columns_of: ColumnsOf) -> Space:
@@ -69,15 +68,15 @@ def behind(space: Space, curve: Part, columns_of: ColumnsOf) -> Space:
         Gives terms' rows in a record, as changes of motion and of force pass them on.
     """
     blocks = [columns_of(r, curve.terms) for r in space.sheet.rows]
-    own = _own(space.sheet, blocks)
+    own = _own(space.sheet, blocks, curve.terms)
     empty = space.columns[:, :0]
     changed = Space(space.sheet, space.scales, empty, own, space.own_unit, columns_of)
     changed.add(differing(blocks))
     return changed
 
 
-def _own(sheet: Sheet, blocks: Sequence[Array]) -> Array:
-    """Return the columns (U, N, R) that units may have of their own."""
-    count = blocks[0].shape[0]
-    chosen = sorted({min(int(share * count), count - 1) for share in _OWN} - {0})
+def _own(sheet: Sheet, blocks: Sequence[Array], curves: Sequence[FittedTerm]) -> Array:
+    """Return the columns (U, N, R) that units may have of their own: of the term's own curves."""
+    own = [k for k, t in enumerate(curves) if t.id == curves[0].id]
+    chosen = sorted({own[min(int(share * len(own)), len(own) - 1)] for share in _OWN} - {0})
     return sheet.stack([differing([b])[0][[0, *chosen]] for b in blocks])

@@ -116,7 +116,9 @@ def unit(term: Term, shape: Shape) -> FittedTerm:
     return FittedTerm(term.id, 1.0, dict(shape))
 
 
-def curve_part(space: Space, blocks: Sequence[Array], term: Term) -> Part:
+def curve_part(
+    space: Space, blocks: Sequence[Array], term: Term, curves: Sequence[FittedTerm]
+) -> Part:
     """Return a term with its curves: the plainest, and how the others differ from it."""
     places = space.add(differing(blocks))
     size = float(space.scale(places[:1])[0])
@@ -124,9 +126,8 @@ def curve_part(space: Space, blocks: Sequence[Array], term: Term) -> Part:
     spread[0] = 1.0
     sign = np.zeros(places.size)
     sign[0] = float(term.nonnegative)
-    shapes = term.curves(space.scales) if term.curves is not None else ()
     return Part(
-        tuple(unit(term, s) for s in shapes), places, spread, sign,
+        tuple(curves), places, spread, sign,
         tuple(size * s for s in _CURVE_SCALES),
     )
 
@@ -136,19 +137,23 @@ def differing(blocks: Sequence[Array]) -> list[Array]:
     return [np.concatenate([b[:1], b[1:] - b[:1]]) for b in blocks]
 
 
-def departures(part: Part, *, path: bool) -> Part:
+def _has_name(curve: FittedTerm, identifier: str) -> bool:
+    """Tell whether a curve of a term has a name among effects: another's, or of what remembers."""
+    return curve.id != identifier or curve.term.remembers(curve.shape) == "path"
+
+
+def departures(part: Part, *, named: bool) -> Part:
     """Return how a term's curves differ from the plainest, without that.
 
     Parameters
     ----------
     part : Part
         From `curve_part`.
-    path : bool
-        Whether curves count that remember the path.
+    named : bool
+        Whether curves count that have a name among effects.
     """
     kept = [
-        k for k, t in enumerate(part.terms)
-        if k > 0 and (path or t.term.remembers(t.shape) == "motion")
+        k for k, t in enumerate(part.terms) if k > 0 and (named or not _has_name(t, part.id))
     ]
     return Part(
         tuple(part.terms[k] for k in kept), part.columns[kept], part.spread[kept],

@@ -121,7 +121,7 @@ def _friction(
 ) -> Sequence[TermEstimate]:
     """Return the few curves that make friction; how surely their sum is known, they share."""
     whole = _estimate(model, spread, place)
-    total = sum(t.coefficient for t in reversal.terms) or 1.0
+    total = reversal.sliding or 1.0
     result = []
     for t in reversal.terms:
         share = t.coefficient / total

@@ -60,6 +60,7 @@ def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
         extras=extras,
         coordinates=chosen,
         bands=1 if single else options.bands,
+        seed=options.seed,
     )
     return Prepared(observations, rows, device, single)
 

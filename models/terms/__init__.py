@@ -37,6 +37,19 @@ def find_term(identifier: str, *, where: str = "") -> Term:
     return TERMS[one_of("term", identifier, sorted(TERMS), where=where)]
 
 
+def curves_of(term: Term, scales: Scales) -> list[tuple[str, Shape]]:
+    """Return ids and shapes of a term's curves, the plainest first.
+
+    Those of terms that mean nothing without it are among them.
+    """
+    own = term.curves(scales) if term.curves is not None else [term.shape({})]
+    others = [
+        (t.id, shape) for t in TERMS.values()
+        if term.id in t.needs and t.curves is not None for shape in t.curves(scales)
+    ]
+    return [*((term.id, shape) for shape in own), *others]
+
+
 def load_term(path: str | Path) -> Term:
     """Return a user's own term from a Python file that defines ``TERM``, checked.
 

@@ -5,7 +5,7 @@ import numpy as np
 from models.checks import Array
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state, slider_state
-from models.terms.scales import Scales
+from models.terms.scales import Scales, doubling
 from models.terms.term import Parameter, Shape, Start, Term
 
 
@@ -65,19 +65,15 @@ def starts(scales: Scales) -> list[Start]:
 
 def curves(scales: Scales) -> list[Shape]:
     """Return a jump, reversals over speeds and displacements, and at shares of a record's speed."""
-    speeds = _doubling(0.03 * scales.least_speed, 0.05 * scales.speed)
-    lengths = _doubling(0.002 * scales.least_displacement, 0.1 * scales.displacement)
+    speeds = doubling(0.03 * scales.least_speed, 0.05 * scales.speed)
+    lengths = doubling(0.002 * scales.least_displacement, 0.1 * scales.displacement)
     return [
         {},
         *({"transition_speed": s} for s in speeds),
         *({"presliding": z} for z in lengths),
         *({"presliding": z, "form": 1.0} for z in lengths),
-        *({"relative_speed": r} for r in _doubling(0.003, 0.1)),
+        *({"relative_speed": r} for r in doubling(0.003, 0.1)),
     ]
-
-
-def _doubling(low: float, high: float) -> list[float]:
-    return [float(v) for v in np.exp(np.arange(np.log(low), np.log(high), np.log(2.0)))]
 
 
 def described(shape: Shape) -> str:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 
 @dataclass(frozen=True)
 class Scales:
@@ -42,3 +44,8 @@ class Scales:
         return {
             "": 1.0, "displacement": self.displacement, "speed": self.speed, "force": self.force
         }[of]
+
+
+def doubling(low: float, high: float) -> list[float]:
+    """Return sizes from one to another, each twice the one before."""
+    return [float(v) for v in np.exp(np.arange(np.log(low), np.log(high), np.log(2.0)))]

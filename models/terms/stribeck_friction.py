@@ -5,7 +5,7 @@ import numpy as np
 from models.checks import Array
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state
-from models.terms.scales import Scales
+from models.terms.scales import Scales, doubling
 from models.terms.term import Parameter, Shape, Start, Term
 
 
@@ -47,6 +47,12 @@ def starts(scales: Scales) -> list[Start]:
     return plain + bristles
 
 
+def curves(scales: Scales) -> list[Shape]:
+    """Return falls over speeds, beside friction that reverses at once."""
+    speeds = doubling(0.1 * scales.least_speed, 0.25 * scales.speed)
+    return [{"stribeck_velocity": s} for s in speeds]
+
+
 _FALLS = ("", "falling as exp(−|v|/v_s)", "falling as 1/(1 + (v/v_s)²)")
 
 
@@ -71,5 +77,6 @@ TERM = Term(
     follows=lambda shape: "path" if shape["presliding"] > 0.0 else "motion",
     needs=("coulomb-friction",),
     starts=starts,
+    curves=curves,
     described=described,
 )

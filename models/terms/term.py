@@ -139,7 +139,8 @@ class Term:
     starts: Callable[[Scales], Sequence[Start]] | None = None
     """Shapes that are tried first in a campaign; None to spread the parameters."""
     curves: Callable[[Scales], Sequence[Shape]] | None = None
-    """Shapes by whose columns measured ones differ from the formula's, the plainest first."""
+    """Shapes by whose columns measured ones differ from the formula's, the plainest first; of a
+    term that needs another they are among that one's."""
     described: Callable[[Shape], str] | None = None
     """What a shape's choices (parameters that no fit changes) mean in words; "" where nothing
     needs saying. None: they are told by name."""

@@ -14,9 +14,9 @@ from tests.discover.exact import campaign
 
 def yielding(amplitude, omega, theta):
     """A force that saturates, late by a displacement: no inertance and no power of speed."""
-    late = min(1.0, 1e-3 / amplitude)
+    late = min(1.0, 2e-3 / amplitude)
     v = amplitude * omega * np.cos(theta + late)
-    return 400.0 * np.tanh(v / 0.03) + 60.0 * np.tanh(v / 0.2) ** 3
+    return 400.0 * np.tanh(v / 0.03) * (1.0 + 0.2 * np.sin(3.0 * theta))
 
 
 def test_idle_terms_make_no_structure():
