@@ -10,7 +10,7 @@ import numpy as np
 from discover.gap.baseline import Baseline, in_few_curves
 from discover.posterior.assess import Assessed
 from discover.posterior.grow import Candidate, Step, grown
-from discover.posterior.left_out import is_less, left_out
+from discover.posterior.left_out import is_less, is_needed, left_out
 from discover.posterior.model import Composite
 from discover.rows import Accuracy, accuracy, pooled_percent
 from models.constitutive import FittedTerm, ForceModel
@@ -201,7 +201,7 @@ def _without_superfluous(
     if added.assessed is None:
         raise ValueError("a candidate that is added is fitted")
     assessed, dropped = added.assessed, list[str]()
-    for name in {r.effect for r in rounds}:
+    for name in dict.fromkeys(r.effect for r in rounds if r.effect != added.id):
         places = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == name]
         if not places:
             continue
@@ -209,7 +209,7 @@ def _without_superfluous(
         for place in reversed(places):
             less = less.without(place)
         without = baseline.assessor.assess(less, assessed.place)
-        if without.value > assessed.value:
+        if not is_needed(baseline.assessor, without, assessed):
             assessed = without
             dropped.append(name)
     return stage(baseline, assessed), tuple(dropped)

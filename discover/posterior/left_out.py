@@ -64,6 +64,16 @@ def predicts_better(assessor: Assessor, was: Assessed, now: Assessed) -> bool:
     return is_less(after, before)
 
 
+def is_needed(assessor: Assessor, without: Assessed, with_it: Assessed) -> bool:
+    """Tell whether a model is better with a term: by evidence where one leaves but noise.
+
+    Where none does, by records left out.
+    """
+    if without.quiet or with_it.quiet:
+        return with_it.value >= without.value
+    return predicts_better(assessor, without, with_it)
+
+
 def is_less(now: Array, was: Array) -> bool:
     """Tell whether errors (records,) are less than others, by the standard error of the mean."""
     gained = was - now
