@@ -65,11 +65,10 @@ def starts(scales: Scales) -> list[Start]:
 
 def curves(scales: Scales) -> list[Shape]:
     """Return a jump, reversals over speeds and displacements, and at shares of a record's speed."""
-    speeds = doubling(0.03 * scales.least_speed, 0.05 * scales.speed)
     lengths = doubling(0.002 * scales.least_displacement, 0.1 * scales.displacement)
     return [
         {},
-        *({"transition_speed": s} for s in speeds),
+        *({"transition_speed": s} for s in scales.reversals()),
         *({"presliding": z} for z in lengths),
         *({"presliding": z, "form": 1.0} for z in lengths),
         *({"relative_speed": r} for r in doubling(0.003, 0.1)),

@@ -39,6 +39,10 @@ class Scales:
         """m/s over which friction reverses where nothing better is known."""
         return 0.01 * self.speed
 
+    def reversals(self) -> list[float]:
+        """Return speeds (m/s) over which friction's curve may change."""
+        return doubling(0.03 * self.least_speed, 0.05 * self.speed)
+
     def size(self, of: str) -> float:
         """Return the greatest "displacement", "speed" or "force"; 1 for "" (no scale)."""
         return {

@@ -5,7 +5,7 @@ import numpy as np
 from models.checks import Array
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state
-from models.terms.scales import Scales, doubling
+from models.terms.scales import Scales
 from models.terms.term import Parameter, Shape, Start, Term
 
 
@@ -48,9 +48,8 @@ def starts(scales: Scales) -> list[Start]:
 
 
 def curves(scales: Scales) -> list[Shape]:
-    """Return falls over speeds, beside friction that reverses at once."""
-    speeds = doubling(0.1 * scales.least_speed, 0.25 * scales.speed)
-    return [{"stribeck_velocity": s} for s in speeds]
+    """Return falls over the speeds over which friction may reverse, beside one at once."""
+    return [{"stribeck_velocity": s} for s in scales.reversals()]
 
 
 _FALLS = ("", "falling as exp(−|v|/v_s)", "falling as 1/(1 + (v/v_s)²)")
