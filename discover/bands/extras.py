@@ -18,8 +18,8 @@ from discover.bands.search import Banded, BandSearch, searched
 from discover.bands.variants import Grids, variants_of
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.climb import Place
-from discover.posterior.grow import Step, grown
-from discover.posterior.left_out import predicts_better
+from discover.posterior.grow import Candidate, Step, grown
+from discover.posterior.left_out import is_needed, predicts_better
 from discover.posterior.model import Evaluator
 from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
@@ -217,9 +217,19 @@ def _with_one_more(device: Device, way: Found) -> Found | Step:
     there = {j.id for j in way.joined}
     open_ids: Collection[str] = [i for i in device.extras if i not in there]
     step = _that_predict(assessor, now, grown(assessor, now, open_ids))
+    while step.best.id and step.best.assessed is not None:
+        more = _without_superfluous(device, _joined(device, way, step))
+        if any(j.id == step.best.id for j in more.joined):
+            return more
+        step = _that_predict(assessor, now, step.without([step.best.id]))
+    return step
+
+
+def _joined(device: Device, way: Found, step: Step) -> Found:
+    """Return the bands with the best of what may join."""
     best = step.best
-    if not best.id or best.assessed is None:
-        return step
+    if best.assessed is None:
+        raise ValueError("what joins is fitted")
     terms = best.assessed.model.terms[-best.count :]
     new = Joined(
         tuple(p.fitted for p in terms), best.value - best.assessed.value, step
@@ -232,6 +242,21 @@ def _with_one_more(device: Device, way: Found) -> Found | Step:
     return _searched(device, (*old, new), best.assessed.place, best.assessed)
 
 
+def _without_superfluous(device: Device, way: Found) -> Found:
+    """Return the bands without what has joined and need not, among the bands found with it."""
+    for joined in way.joined:
+        now = composite(device, way)
+        own = [k for k, p in enumerate(now.model.terms) if p.fitted.id == joined.id]
+        less = now.model
+        for place in reversed(own):
+            less = less.without(place)
+        without = device.assessor.assess(less, now.place)
+        if not (is_told(device.assessor, now, own) and is_needed(device.assessor, without, now)):
+            others = [j for j in way.joined if j is not joined]
+            way = _searched(device, others, without.place, without)
+    return way
+
+
 def _that_predict(assessor: Assessor, now: Assessed, step: Step) -> Step:
     """Return a step without what is more probable but does not predict records left out better.
 
@@ -241,8 +266,16 @@ def _that_predict(assessor: Assessor, now: Assessed, step: Step) -> Step:
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
             break
-        told = is_told(assessor, candidate.assessed, candidate.count)
+        told = is_told(assessor, candidate.assessed, _last(candidate))
         if told and predicts_better(assessor, now, candidate.assessed):
             break
         refused.append(candidate.id)
     return step.without(refused)
+
+
+def _last(candidate: Candidate) -> range:
+    """Return the places of a candidate's own terms, which are the last."""
+    if candidate.assessed is None:
+        return range(0)
+    count = len(candidate.assessed.model.terms)
+    return range(count - candidate.count, count)

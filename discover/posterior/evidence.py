@@ -11,6 +11,8 @@ from models.checks import Array, Indices
 
 _LOG_2 = float(np.log(2.0))
 _LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))
+_ROUNDED = 1e-13
+"""Of a column's product with itself: what rounding may take from it."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,8 @@ def solved(gram: Array, side: Array, spread: Array, sign: Array, log_normal: flo
         Log density of the measured force without any column.
     """
     count = gram.shape[-1]
-    inner = np.eye(count) + spread[..., :, None] * gram * spread[..., None, :]
+    inner = spread[..., :, None] * gram * spread[..., None, :]
+    inner = inner + np.eye(count) * (1.0 + _ROUNDED * inner)  # columns alike stay apart
     factor = np.linalg.cholesky(inner)
     inverse = np.linalg.inv(factor)
     half = np.einsum("...ij,...j->...i", inverse, spread * side)

@@ -10,12 +10,14 @@ from discover.posterior.assess import Assessed, Assessor
 from models.checks import Array, Indices
 
 _DRAWS = 4000  # of records' weights
+_NOTHING = 1e-12  # of a column's energy: rounding of a sum less one of its parts
 
 
 def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
     """Return what a model leaves of each record: fitted to all, and to the others alone.
 
-    Of one record alone, parts that move alike are left out in turn.
+    Of one record alone, parts that move alike are left out in turn. What belongs to a record and
+    to no other, as an offset of its own, can't be known from the others: it is taken from it.
 
     Parameters
     ----------
@@ -38,19 +40,35 @@ def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
     target = local.target(space.sheet.target)[:, None]
     columns = np.concatenate([local.slopes, departing, target], axis=1)
     gram = here.within(columns)
-    prior = np.diag(np.concatenate([local.spread, wide]) ** -2.0)
+    prior = np.concatenate([local.spread, wide]) ** -2.0
     records = np.array([u.record for u in space.sheet.units])
     parts = records if records.max() > 0 else np.arange(records.size)
     total = gram.sum(axis=0)
     found = np.zeros((2, parts.max() + 1))
     for part in range(parts.max() + 1):
         inside = parts == part
-        own = total - gram[inside].sum(axis=0)
-        for place, some in enumerate((total, own)):
-            values = np.linalg.solve(some[:-1, :-1] + prior, some[:-1, -1])
+        own = gram[inside].sum(axis=0)
+        everywhere = np.ones(prior.size, dtype=bool)
+        elsewhere = np.diagonal(total - own)[:-1] > _NOTHING * np.diagonal(total)[:-1]
+        if parts is not records:
+            elsewhere = everywhere
+        for place, (some, seen) in enumerate(((total, everywhere), (total - own, elsewhere))):
+            values = _beside(some, prior, seen, np.zeros(prior.size))
+            values = _beside(own, prior, ~seen, values)
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
             found[place, part] = _relative(assessor, np.flatnonzero(inside), left)
     return found[0], found[1]
+
+
+def _beside(gram: Array, prior: Array, free: Indices, values: Array) -> Array:
+    """Return coefficients (P,): the free ones by products (P + 1, P + 1), beside the others."""
+    if not np.any(free):
+        return values
+    side = gram[:-1, -1] - gram[:-1, :-1] @ np.where(free, 0.0, values)
+    inner = gram[:-1, :-1][np.ix_(free, free)] + np.diag(prior[free])
+    result = values.copy()
+    result[free] = np.linalg.solve(inner, side[free])
+    return result
 
 
 def predicts_better(assessor: Assessor, was: Assessed, now: Assessed) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,13 +84,12 @@ def idle(predicting: Assessed) -> list[int]:
     return sorted(found, key=lambda place: found[place])
 
 
-def is_told(assessor: Assessor, assessed: Assessed, count: int) -> bool:
-    """Tell whether the records tell the sign of a coefficient among a model's last terms.
+def is_told(assessor: Assessor, assessed: Assessed, terms: Collection[int]) -> bool:
+    """Tell whether the records tell the sign of a coefficient among some of a model's terms.
 
     A term that is probable beside a remainder, but that a model which has to predict by itself
     may as well do without, stands for a part of that remainder.
     """
     spread = spread_of(assessor, assessed, assessor.predicting(assessed).model)
-    first = len(assessed.model.terms) - count
-    last = [i for i, n in enumerate(spread.numbers) if n.term >= first and n.shape is None]
-    return bool(np.any(np.abs(spread.mean[last]) > _SURE * spread.deviation[last]))
+    own = [i for i, n in enumerate(spread.numbers) if n.term in terms and n.shape is None]
+    return bool(np.any(np.abs(spread.mean[own]) > _SURE * spread.deviation[own]))

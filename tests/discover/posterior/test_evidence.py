@@ -96,3 +96,10 @@ def test_columns_that_are_marginalised_are_a_part_of_the_covariance(problem):
     np.testing.assert_allclose(left[np.ix_(kept, kept)], expected[np.ix_(kept, kept)], rtol=1e-9)
     before = log_density(force, covariance)
     assert before + gained == pytest.approx(log_density(force, wider), rel=1e-9)
+
+
+def test_columns_that_are_the_same_share_one_coefficient():
+    size = 1e19
+    found = solved(np.full((2, 2), size), np.full(2, 3.0 * size), np.ones(2), np.zeros(2), 0.0)
+    np.testing.assert_allclose(found.mean, [1.5, 1.5], rtol=1e-6)
+    assert np.isfinite(found.log_evidence)
