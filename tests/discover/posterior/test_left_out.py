@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from discover.posterior.left_out import is_less, predicts_best
+from discover.posterior.left_out import is_less, left_out, predicts_best
+from discover.posterior.model import Composite
+from discover.study import StudyOptions
+from discover.study.prepare import prepare
+from models.constitutive import FittedTerm, ForceModel
+from tests.discover.exact import campaign
 
 
 def test_a_model_that_is_better_in_every_record_is_surer_of_more_records():
@@ -26,3 +31,35 @@ def test_errors_are_less_by_more_than_their_standard_error_only():
     assert is_less(was - 0.1, was)
     assert not is_less(was, was)
     assert not is_less(was + [-0.5, 0.4, 0.4, -0.4], was)
+
+
+FREQUENCIES = (0.3, 0.7, 1.5)
+
+
+def loaded(amplitude, omega, theta):
+    """Inertia and damping, with an offset of each record that follows no law."""
+    v = amplitude * omega * np.cos(theta)
+    offset = 60.0 * np.sin(730.0 * amplitude * omega)
+    return -80.0 * amplitude * omega**2 * np.sin(theta) + 900.0 * v + offset
+
+
+def test_what_belongs_to_one_record_is_taken_from_it_when_it_is_left_out():
+    records = campaign(loaded, frequencies=FREQUENCIES, amplitudes=(0.01, 0.02), noise=0.01)
+    device = prepare(records, StudyOptions()).device
+    structure = (FittedTerm("inertia", 1.0, {}), FittedTerm("viscous-damping", 1.0, {}))
+    count = len(records.records)
+    own = tuple(FittedTerm("force-offset", 1.0, {"only": float(n)}) for n in range(1, count + 1))
+    none, one, each = (
+        predicted(device, ForceModel((*structure, *offsets)))
+        for offsets in ((), (FittedTerm("force-offset", 1.0, {}),), own)
+    )
+    assert np.all(each < 2.0 * 0.01**2)
+    assert np.mean(none) > 100.0 * np.mean(each)
+    assert np.mean(one) > 100.0 * np.mean(each)
+
+
+def predicted(device, model):
+    """Return what a model leaves of each record, predicted by the others."""
+    assessor = device.assessor
+    assessed = assessor.assess(Composite.of(model), assessor.space.start)
+    return left_out(assessor, assessor.predicting(assessed))[1]
