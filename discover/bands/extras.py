@@ -18,7 +18,7 @@ from discover.bands.search import Banded, BandSearch, searched
 from discover.bands.variants import Grids, variants_of
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.climb import Place
-from discover.posterior.grow import Candidate, Step, grown
+from discover.posterior.grow import Step, grown
 from discover.posterior.left_out import is_needed, predicts_better
 from discover.posterior.model import Evaluator
 from discover.posterior.setup import space_of
@@ -266,16 +266,8 @@ def _that_predict(assessor: Assessor, now: Assessed, step: Step) -> Step:
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
             break
-        told = is_told(assessor, candidate.assessed, _last(candidate))
+        told = is_told(assessor, candidate.assessed, candidate.places)
         if told and predicts_better(assessor, now, candidate.assessed):
             break
         refused.append(candidate.id)
     return step.without(refused)
-
-
-def _last(candidate: Candidate) -> range:
-    """Return the places of a candidate's own terms, which are the last."""
-    if candidate.assessed is None:
-        return range(0)
-    count = len(candidate.assessed.model.terms)
-    return range(count - candidate.count, count)

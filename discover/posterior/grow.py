@@ -45,6 +45,12 @@ class Candidate:
     left: Array | None = None
     """What it leaves of each record, predicted by the others; None where evidence decides."""
 
+    @property
+    def places(self) -> range:
+        """Places of its terms in the model with it: the last ones."""
+        count = 0 if self.assessed is None else len(self.assessed.model.terms)
+        return range(count - self.count, count)
+
 
 @dataclass(frozen=True)
 class Step:
