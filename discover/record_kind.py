@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from discover.records import Record
-from discover.sine_fit import SineFit, fit_sine, harmonic_design
+from discover.sine_fit import FEW_CYCLES, Harmonics, SineFit, fit_sine, moments, strongest_line
 from models.checks import Array, InputError
+from models.fractional.window import hann_window
 
 KINDS = ("sine", "periodic", "transient", "trajectory")
 
@@ -116,8 +117,9 @@ def _classified(record: Record) -> RecordKind:
     x = record.displacement
     if not np.ptp(x) > 0.0:
         raise InputError("displacement", expected="varying", found="a constant", where=record.file)
-    rest = _starts_at_rest(x)
-    steady = _steady_sine(record.time, x)
+    power = _power(x)
+    rest = _starts_at_rest(x, power)
+    steady = _steady_sine(record.time, x, power)
     if steady is not None:
         usable, fit = steady
         return RecordKind("sine", usable, fit, 1.0 / fit.frequency, fit.cycles, rest)
@@ -130,11 +132,14 @@ def _classified(record: Record) -> RecordKind:
     return RecordKind(kind, slice(0, size), None, None, None, rest)
 
 
-def _steady_sine(time: Array, x: Array) -> tuple[slice, SineFit] | None:
+def _steady_sine(time: Array, x: Array, power: Array) -> tuple[slice, SineFit] | None:
     """Return the steady part of a sine test and its fit, or None where it is something else."""
-    if x.size < 16 or _line_share(x) < 0.3:
+    if x.size < 16 or _line_share(power) < 0.3:
         return None
-    fit = fit_sine(time, x)
+    duration = float(time[-1] - time[0])
+    rate = (x.size - 1) / duration
+    line = strongest_line(power, rate / next_fast_len(x.size, real=True), duration)
+    fit = fit_sine(time, x, near=_if_clear(line, duration))
     usable = slice(0, x.size)
     for _ in range(3):
         found = _steady_part(time, x, fit)
@@ -155,6 +160,11 @@ def _steady_sine(time: Array, x: Array) -> tuple[slice, SineFit] | None:
     return usable, fit
 
 
+def _if_clear(line: float, duration: float) -> float | None:
+    """Return the frequency of a line, Hz; None where the cycles are too few for its peak."""
+    return line if line * duration >= FEW_CYCLES else None
+
+
 def _detrended(x: Array) -> Array:
     """Return x without its mean and its straight trend."""
     ramp = np.linspace(-1.0, 1.0, x.size)
@@ -164,12 +174,11 @@ def _detrended(x: Array) -> Array:
 def _power(x: Array) -> Array:
     """Return the power spectrum of x, detrended and tapered."""
     padded = next_fast_len(x.size, real=True)
-    return np.asarray(np.abs(rfft(_detrended(x) * np.hanning(x.size), padded)) ** 2)
+    return np.asarray(np.abs(rfft(_detrended(x) * hann_window(x.size), padded)) ** 2)
 
 
-def _line_share(x: Array) -> float:
-    """Return the share of the tapered power in the strongest line and its harmonics."""
-    power = _power(x)
+def _line_share(power: Array) -> float:
+    """Return the share of a tapered power in the strongest line and its harmonics."""
     peak = int(np.argmax(power))
     width = max(4, peak // 20)
     near = sum(
@@ -186,14 +195,19 @@ def _local_phasors(time: Array, x: Array, fit: SineFit) -> tuple[NDArray[np.int_
     length = min(max(round(1.0 / (fit.frequency * step)), 4), x.size)
     starts = np.arange(0, x.size - length + 1, max(length // 4, 1))
     plain = x - fit.coefficients[0].real - fit.trend * (time - time.mean())
-    columns = harmonic_design(time, fit.frequency, 1)[:, :3]
+    harmonics = Harmonics(moments(time), fit.frequency)
+    cosine, minus_sine = harmonics.series(np.array([[0.0, 1.0], [0.0, 1j]]))
+    columns = (np.ones(1), cosine, minus_sine)
 
     def over_windows(values: Array) -> Array:
-        total = np.concatenate([[0.0], np.cumsum(values)])
+        total = np.concatenate([[0.0], np.cumsum(np.broadcast_to(values, x.shape))])
         return np.asarray(total[starts + length] - total[starts])
 
-    gram = np.array([[over_windows(a * b) for a in columns.T] for b in columns.T])
-    goal = np.array([over_windows(plain * b) for b in columns.T])
+    gram = np.empty((3, 3, starts.size))
+    for i, one in enumerate(columns):
+        for j, other in enumerate(columns[: i + 1]):
+            gram[i, j] = gram[j, i] = over_windows(one * other)
+    goal = np.array([over_windows(plain * c) for c in columns])
     found = np.linalg.pinv(np.moveaxis(gram, 2, 0), hermitian=True) @ goal.T[:, :, None]
     relative = (found[:, 1, 0] + 1j * found[:, 2, 0]) / fit.coefficients[1]
     return starts, np.abs(relative), np.angle(relative)
@@ -282,13 +296,13 @@ def _period(x: Array) -> int | None:
     return None
 
 
-def _starts_at_rest(x: Array) -> bool:
+def _starts_at_rest(x: Array, power: Array) -> bool:
     """Return whether the speed at the first sample vanishes beside the peak speed.
 
     The speed is that of a parabola through the first half radian of the fastest motion, so that
     noise averages out; where the sampling or the noise leaves it open the answer is no.
     """
-    power = np.cumsum(_power(x))
+    power = np.cumsum(power)
     fastest = max(int(np.searchsorted(power, 0.99 * power[-1])), 1)  # in bins
     count = min(int(next_fast_len(x.size, real=True) / (4.0 * np.pi * fastest)), x.size // 8)
     if count < 5:

@@ -13,7 +13,7 @@ from discover.motion_fit.noise import power_density
 from discover.motion_fit.observation import Lines, Observation, Window
 from discover.records import Record
 from models.checks import Array, InputError
-from models.fractional import band_limited_derivative, low_pass
+from models.fractional import band_limited, low_pass
 from models.motion import Motion
 
 _SIGNAL_TO_NOISE = 1000.0  # of the displacement's power, at the edge of the excited band
@@ -51,7 +51,11 @@ def choose_cutoff(displacement: Array, step: float) -> float:
     displacement that has no floor to stand above, as it moves at all frequencies, ends near the
     Nyquist frequency; where the force no longer follows it is for the force to tell.
     """
-    frequencies, density = power_density(displacement - displacement.mean(), step)
+    return _cutoff(*power_density(displacement - displacement.mean(), step))
+
+
+def _cutoff(frequencies: Array, density: Array) -> float:
+    """Return the end of the band of a displacement's power density, Hz."""
     nyquist = float(frequencies[-1])
     floor = floor_of(frequencies, density, 0.6 * nyquist)
     clear = np.flatnonzero(smooth(density) > _SIGNAL_TO_NOISE * floor)
@@ -59,19 +63,15 @@ def choose_cutoff(displacement: Array, step: float) -> float:
     return float(min(max(edge, _FEWEST_LINES * frequencies[1]), _NYQUIST_SHARE * nyquist))
 
 
-def _band_motion(record: Record, usable: slice, x: Array, cutoff: float) -> Motion:
-    """Return the motion up to a frequency, Hz, of a displacement (N,) at the usable samples."""
-    step = record.step
-    reference = x - x[0]
-    edge_noise = float(np.clip(_white_noise(x, step, cutoff) / np.std(x), 1e-7, 1e-2))
+def _band_motion(
+    record: Record, usable: slice, x: Array, cutoff: float, noise: float
+) -> Motion:
+    """Return the motion up to a frequency, Hz, of a displacement (N,) at the usable samples.
 
-    def differentiate(orders: Array) -> Array:
-        return np.asarray(
-            band_limited_derivative(
-                reference, orders, step, cutoff=cutoff, edge_noise=edge_noise
-            )
-        )
-
+    The displacement has a white `noise` (m, root mean square).
+    """
+    edge_noise = float(np.clip(noise / np.std(x), 1e-7, 1e-2))
+    differentiate = band_limited(x - x[0], record.step, cutoff=cutoff, edge_noise=edge_noise)
     position, velocity, acceleration = differentiate(np.array([0.0, 1.0, 2.0]))
     motion = Motion(
         record.time[usable], position + x[0], velocity, acceleration, differentiate, "band-limited"
@@ -99,9 +99,8 @@ def _measured(record: Record, usable: slice, motion: Motion, cutoff: float) -> M
     )
 
 
-def _white_noise(displacement: Array, step: float, cutoff: float) -> float:
+def _white_noise(frequencies: Array, density: Array, cutoff: float) -> float:
     """Return the rms of white noise of the density that a displacement has above its band, m."""
-    frequencies, density = power_density(displacement - displacement.mean(), step)
     nyquist = float(frequencies[-1])
     above = max(min(1.3 * cutoff, 0.95 * nyquist), 0.6 * nyquist)
     return float(np.sqrt(floor_of(frequencies, density, above) * nyquist))
@@ -165,10 +164,12 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         raise InputError("displacement", expected="given", where=record.file)
     step = record.step
     time, x, force = record.time[usable], record.displacement[usable], record.force[usable]
-    cutoff, follows = np.inf, choose_cutoff(x, step)
+    spectrum = power_density(x - x.mean(), step)
+    cutoff, follows = np.inf, _cutoff(*spectrum)
     while follows < EDGE * cutoff:  # each time by a tenth at least, and never below a few lines
         cutoff = follows
-        motion = _band_motion(record, usable, x, cutoff)
+        displacement_noise = _white_noise(*spectrum, cutoff)
+        motion = _band_motion(record, usable, x, cutoff, displacement_noise)
         pieces = _pieces(time.size, cutoff * step)
         inner = slice(pieces[0][0], pieces[-1][0] + pieces[-1][1].size)
         found = band_noise(motion, force, step, cutoff, inner)
@@ -216,7 +217,7 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         time=time[shown],
         measured=at_samples(force),
         at_samples=at_samples,
-        displacement_noise=_white_noise(x, step, cutoff),
+        displacement_noise=displacement_noise,
         force_noise=float(np.sqrt(noise.power)),
         cutoff=cutoff,
         usable=usable,

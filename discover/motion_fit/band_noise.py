@@ -18,6 +18,7 @@ from scipy.fft import prev_fast_len
 from discover.motion_fit.noise_spectrum import NoiseSpectrum, smooth_spectrum
 from discover.motion_fit.observation import Lines
 from models.checks import Array
+from models.fractional.window import hann_window
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state
 
@@ -70,9 +71,9 @@ def band_noise(
     if size > _LONG:  # a few samples less make many transforms several times as fast
         inner = slice(inner.start, inner.start + prev_fast_len(size, real=True))
     force = force[inner]
-    taper = np.hanning(force.size + 2)[1:-1]
+    taper = hann_window(force.size + 2)[1:-1]
     scale = np.sqrt(2.0 * step / np.sum(taper**2))
-    taper *= scale
+    taper = taper * scale
 
     def spectrum(column: Array) -> Lines:
         return np.asarray(np.fft.rfft((column - column.mean()) * taper)[1:])
@@ -126,8 +127,10 @@ def _functions_of(motion: Motion) -> Iterator[Array]:
     x = motion.displacement - motion.displacement.mean()
     v, a = motion.velocity, motion.acceleration
     place, speed, push = (_unit(c) for c in (x, v, a))
+    ones = np.ones_like(place)
+    places, speeds = ([ones, c, c * c, c * c * c] for c in (place, speed))
     for i, j in _PRODUCTS:
-        yield place**i * speed**j
+        yield places[i] * speeds[j]
     yield from (np.abs(place), np.abs(speed), place * np.abs(place), speed * np.abs(speed))
     for share in _SCALES:
         sign = np.tanh(speed / share)

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from models.checks import Array, Indices
+from models.compiled import compiled
 
 POINTS = 2048
 """Of the grid over one cycle, on which terms are evaluated; samples are told apart by it."""
@@ -132,21 +133,12 @@ def cycle_sums(
     >>> found.samples, float(found.means @ found.counts), round(found.misfit(0.0 * found.count))
     (1000, 4995.0, 33283)
     """
-    cells = STRETCHES * POINTS
-    totals = np.zeros((6, cells))
+    totals = np.zeros((STRETCHES * POINTS, 6))
     power = 0.0
     for time, force in pieces:
-        since = time - first
-        stretch = np.minimum((since / (last - first) * STRETCHES).astype(np.intp), STRETCHES - 1)
-        place = np.mod(time * frequency, 1.0) * POINTS
-        point = np.minimum(place.astype(np.intp), POINTS - 1)
-        share = place - point
-        cell = stretch * POINTS + point
-        weights = (None, share, share**2, since, force, force * share)
-        for total, weight in zip(totals, weights, strict=True):
-            total += np.bincount(cell, weight, minlength=cells)
+        _add(totals, time, force, frequency, first, STRETCHES / (last - first))
         power += float(force @ force)
-    count, shares, squares, times, forces, turned = totals.reshape(6, STRETCHES, POINTS)
+    count, shares, squares, times, forces, turned = totals.T.reshape(6, STRETCHES, POINTS)
     return CycleSums(
         frequency=frequency,
         first=first,
@@ -159,6 +151,26 @@ def cycle_sums(
         force_share=turned,
         power=power,
     )
+
+
+@compiled(cache=True)
+def _add(
+    totals: Array, time: Array, force: Array, frequency: float, first: float, density: float
+) -> None:
+    """Add samples to the sums of their cells; `density` is in stretches for each second."""
+    for i in range(time.size):
+        since = time[i] - first
+        stretch = min(int(since * density), STRETCHES - 1)
+        place = ((time[i] * frequency) % 1.0) * POINTS
+        point = min(int(place), POINTS - 1)
+        share = place - point
+        total = totals[stretch * POINTS + point]
+        total[0] += 1.0
+        total[1] += share
+        total[2] += share * share
+        total[3] += since
+        total[4] += force[i]
+        total[5] += force[i] * share
 
 
 def _cells(values: Array) -> Array:

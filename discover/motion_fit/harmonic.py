@@ -14,7 +14,7 @@ from discover.motion_fit.noise import density_between_lines
 from discover.motion_fit.noise_spectrum import noise_spectrum
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
 from discover.records import Record
-from discover.sine_fit import harmonic_design, harmonic_series
+from discover.sine_fit import Harmonics, Moments, harmonic_series, moments
 from models.checks import Array, InputError
 from models.fractional import harmonic_factors
 from models.motion import Motion, harmonic_motion
@@ -28,36 +28,33 @@ _PIECE = 2**16  # samples
 BoolArray = NDArray[np.bool_]
 
 
-def _motion_at(time: Array, frequency: float, displacement: Lines) -> Motion:
+def _motion_at(at: Moments, frequency: float, displacement: Lines) -> Motion:
     """Return the steady-state motion at the samples themselves.
 
     Terms then pass the very sampling that the force passed, and a jump of friction aliases in
     both alike.
     """
     omega = 2.0 * np.pi * frequency * np.arange(displacement.size)
-    waves = harmonic_design(time, frequency, displacement.size - 1)
+    harmonics = Harmonics(at, frequency)
 
     def differentiate(orders: Array) -> Array:
-        phasors = harmonic_factors(orders, omega) * displacement
-        pairs = np.stack((phasors[:, 1:].real, phasors[:, 1:].imag), axis=-1)
-        flat = np.concatenate((phasors[:, :1].real, pairs.reshape(orders.size, -1)), axis=1)
-        return np.asarray(flat @ waves.T)
+        return harmonics.series(harmonic_factors(orders, omega) * displacement)
 
     x, v, a = differentiate(np.array([0.0, 1.0, 2.0]))
-    return Motion(time, x, v, a, differentiate, "weyl")
+    return Motion(at.time, x, v, a, differentiate, "weyl")
 
 
-def moving(time: Array, frequency: float, displacement: Lines | None) -> BoolArray:
+def moving(at: Moments, frequency: float, displacement: Lines | None) -> BoolArray:
     """Return which samples lie clear of the reversals of motion.
 
     Where friction reverses, a sample is on one side or the other by chance: where sampling and
     test are in step, always the same ones. They are a five-hundredth of the samples.
     """
     if displacement is None:
-        return np.ones(time.size, dtype=bool)
+        return np.ones(at.time.size, dtype=bool)
     phasors = 1j * np.arange(displacement.size) * displacement
     cycle = harmonic_series(np.arange(GRID) / (GRID * frequency), frequency, phasors)
-    velocity = harmonic_series(time, frequency, phasors)
+    velocity = Harmonics(at, frequency).series(phasors)
     return np.asarray(np.abs(velocity) > _REVERSAL * float(np.abs(cycle).max()))
 
 
@@ -110,8 +107,10 @@ def observe_sine(
             "sampling", expected="above 2.5 times the frequency", found="less", where=record.file
         )
     middle = float(time.mean()) if duration * frequency > 2.0 else None
-    clear = moving(time, frequency, displacement)
-    fit = harmonic_lines(time[clear], frequency, count, middle=middle)
+    every = moments(time)
+    clear = moving(every, frequency, displacement)
+    at = every.of(clear)
+    fit = harmonic_lines(at, frequency, count, middle=middle)
     (solution,) = fit.solve(force[None, clear])
     residual = np.zeros(time.size)
     residual[clear] = force[clear] - fit.fitted(solution)
@@ -136,9 +135,9 @@ def observe_sine(
     fitted_phase = displacement is None
     harmonic = np.arange(count + 1)
     if displacement is None:
-        displacement = _fit_phase(record, lines, fit.lines, time, frequency, variance)
+        displacement = _fit_phase(record, lines, fit.lines, at, frequency, variance)
     turn = np.exp(-1j * harmonic * (np.angle(displacement[1]) + 0.5 * np.pi))
-    motion = _motion_at(time, frequency, displacement)
+    motion = _motion_at(at, frequency, displacement)
     speed = 2.0 * np.pi * frequency * float(abs(displacement[1]))
     window = Window(
         omega=2.0 * np.pi * multiples,
@@ -156,7 +155,7 @@ def observe_sine(
         kind="sine",
         motion=motion,
         cycle=harmonic_motion(displacement, frequency, samples=GRID),
-        at=lambda moments: _motion_at(moments, frequency, displacement),
+        at=lambda time: _motion_at(moments(time), frequency, displacement),
         windows=(window,),
         time=time,
         measured=force,
@@ -185,7 +184,7 @@ def _fit_phase(
     record: Record,
     force: Lines,
     project: Callable[[Array], Lines],
-    time: Array,
+    at: Moments,
     frequency: float,
     variance: Array,
 ) -> Lines:
@@ -204,7 +203,7 @@ def _fit_phase(
     misfit = np.empty(_PHASES)
     for index, phase in enumerate(phases):
         phasors = [0.0, -1j * record.amplitude * np.exp(1j * phase)]
-        motion = _motion_at(time, frequency, np.array(phasors))
+        motion = _motion_at(at, frequency, np.array(phasors))
         v = motion.velocity
         lines = project(np.stack([motion.acceleration, v, v * np.abs(v), np.sign(v)]))
         lines /= np.linalg.norm(lines, axis=1)[:, None]

@@ -1,4 +1,4 @@
-"""Least squares of harmonics over many samples, a block of them at a time.
+"""Least squares of harmonics over many samples.
 
 The columns of the fit are never there as a whole: at 31 harmonics they would take half a kilobyte
 for each sample. Their products are sums of harmonics of twice the number, so that no matrix of
@@ -7,27 +7,22 @@ columns is multiplied by itself either.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from discover.motion_fit.observation import Lines
+from discover.sine_fit import ComplexArray, Harmonics, Moments, columns_of, moments
 from models.checks import Array
-
-_BLOCK = 4096  # samples: with their harmonics they stay in the processor's cache
 
 
 @dataclass(frozen=True)
 class HarmonicLines:
     """A fit of mean, harmonics and a drift to columns of samples."""
 
-    time: Array
-    """(N,) s."""
-    frequency: float
-    """Hz, of the fundamental."""
+    harmonics: Harmonics
+    """At N samples."""
     count: int
     """Number of harmonics, H."""
     middle: float | None
@@ -35,49 +30,45 @@ class HarmonicLines:
     factor: Any
     """Of the normal matrix, as `scipy.linalg.cho_factor` gives it."""
 
+    @property
+    def time(self) -> Array:
+        """(N,) s."""
+        return self.harmonics.at.time
+
     def solve(self, columns: Array) -> Array:
         """Return coefficients of columns (K, N): (K, 1 + 2 H), or one more with a drift.
 
         In the order of `discover.sine_fit.harmonic_design`.
         """
-        phasors = np.zeros((columns.shape[0], self.count + 1), dtype=np.complex128)
-        drift = np.zeros(columns.shape[0])
-        for inside, waves in _blocks(self.time, self.frequency, self.count):
-            phasors += columns[:, inside] @ waves.T
-            if self.middle is not None:
-                drift += columns[:, inside] @ (self.time[inside] - self.middle)
-        sums = _flat(phasors)
+        sums = _flat(self.harmonics.sums(columns, self.count)[0])
         if self.middle is not None:
-            sums = np.column_stack([sums, drift])
+            sums = np.column_stack([sums, columns @ (self.time - self.middle)])
         return np.asarray(cho_solve(self.factor, sums.T).T)
 
     def fitted(self, solution: Array) -> Array:
         """Return what coefficients (P,) give at the samples, (N,)."""
         size = 2 * self.count + 1
         weights = solution[1:size:2] + 1j * solution[2:size:2]
-        result = np.empty(self.time.size)
-        for inside, waves in _blocks(self.time, self.frequency, self.count):
-            result[inside] = (weights @ waves[1:]).real
-        result += solution[0]
+        result = self.harmonics.series(np.concatenate([solution[:1], weights]))
         if self.middle is not None:
             result += solution[-1] * (self.time - self.middle)
         return result
 
-    def lines(self, columns: Array) -> Lines:
+    def lines(self, columns: Array) -> ComplexArray:
         """Return the lines of columns (..., N): (..., H + 1), with their mean square."""
         found = lines_of(self.solve(columns.reshape(-1, self.time.size)), self.count)
         return found.reshape((*columns.shape[:-1], self.count + 1))
 
 
 def harmonic_lines(
-    time: Array, frequency: float, count: int, *, middle: float | None
+    at: Moments, frequency: float, count: int, *, middle: float | None
 ) -> HarmonicLines:
     """Return the fit at samples.
 
     Parameters
     ----------
-    time : ndarray, shape (N,)
-        s.
+    at : Moments
+        Of the N samples, s.
     frequency : float
         Hz.
     count : int
@@ -88,58 +79,37 @@ def harmonic_lines(
     Examples
     --------
     >>> t = np.arange(50) / 20.0
-    >>> fit = harmonic_lines(t, 1.3, 2, middle=1.0)
+    >>> fit = harmonic_lines(moments(t), 1.3, 2, middle=1.0)
     >>> columns = np.stack([3.0 + 2.0 * np.cos(2 * np.pi * 1.3 * t), t - 1.0])
     >>> (fit.solve(columns).round(9) + 0.0).tolist()
     [[3.0, 2.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]]
     """
+    harmonics = Harmonics(at, frequency)
     products = _Products(count, middle)
-    for inside, waves in _blocks(time, frequency, count):
-        products.add(time[inside], waves)
-    return HarmonicLines(time, frequency, count, middle, cho_factor(products.normal()))
+    products.add(harmonics)
+    return HarmonicLines(harmonics, count, middle, cho_factor(products.normal()))
 
 
 class _Products:
     """Sums of harmonics over samples, of which the products of all columns are made."""
 
     def __init__(self, count: int, middle: float | None) -> None:
-        self.count, self.middle = count, middle
-        self.sums = np.zeros(2 * count + 1, dtype=np.complex128)  # of exp(i k w t)
-        self.drifts = np.zeros(count + 1, dtype=np.complex128)  # of (t - middle) exp(i k w t)
-        self.late = 0.0
+        self.middle = middle
+        self.columns = columns_of(tuple(range(1, count + 1)), trend=middle is not None)
+        self.powers = 1 if middle is None else 3
+        self.sums = np.zeros((self.powers, 2 * count + 1), dtype=np.complex128)
 
-    def add(self, time: Array, waves: Lines) -> None:
-        """Add a block of samples (B,) with its harmonics (H + 1, B)."""
-        self.sums[: self.count + 1] += waves.sum(axis=1)
-        self.sums[self.count + 1 :] += waves[1:] @ waves[-1]
-        if self.middle is not None:
-            moment = time - self.middle
-            self.drifts += waves @ moment
-            self.late += float(moment @ moment)
+    def add(self, harmonics: Harmonics) -> None:
+        """Add samples."""
+        own = harmonics.own(self.sums.shape[1] - 1, powers=self.powers)
+        if self.middle is not None:  # time counts from the middle, harmonics from zero
+            own[2] += self.middle * (self.middle * own[0] - 2.0 * own[1])
+            own[1] -= self.middle * own[0]
+        self.sums += own
 
     def normal(self) -> Array:
         """Return the normal matrix."""
-        return _normal(self.sums, self.drifts if self.middle is not None else None, self.late)
-
-
-def _normal(sums: Lines, drifts: Lines | None, late: float) -> Array:
-    """Return the normal matrix from sums (2 H + 1,), and with a drift from its own (H + 1,)."""
-    count = sums.size // 2
-    k = np.arange(count + 1)
-    difference = k[:, None] - k
-    apart = np.where(difference >= 0, sums[np.abs(difference)], sums[np.abs(difference)].conj())
-    together = sums[k[:, None] + k]
-    size = 2 * count + 1
-    normal = np.empty((size + int(drifts is not None),) * 2)
-    cosine, sine = [0, *range(1, size, 2)], list(range(2, size, 2))
-    normal[np.ix_(cosine, cosine)] = 0.5 * (apart + together).real
-    normal[np.ix_(sine, sine)] = 0.5 * (apart - together).real[1:, 1:]
-    mixed = 0.5 * (apart - together).imag[:, 1:]
-    normal[np.ix_(cosine, sine)], normal[np.ix_(sine, cosine)] = mixed, mixed.T
-    if drifts is not None:
-        normal[-1, :-1] = normal[:-1, -1] = _flat(drifts[None])[0]
-        normal[-1, -1] = late
-    return normal
+        return self.columns.products(self.sums)
 
 
 class LineSums:
@@ -165,9 +135,9 @@ class LineSums:
 
     def add(self, time: Array, force: Array) -> None:
         """Add samples (B,), s and N."""
-        for inside, waves in _blocks(time, self.frequency, self._phasors.size - 1):
-            self._products.add(time[inside], waves)
-            self._phasors += waves @ force[inside]
+        harmonics = Harmonics(moments(time), self.frequency)
+        self._products.add(harmonics)
+        self._phasors += harmonics.sums(force[None], self._phasors.size - 1)[0, 0]
         self._drift += float((time - self.middle) @ force)
         self._power += float(force @ force)
 
@@ -178,26 +148,14 @@ class LineSums:
         return solution, max(self._power - float(solution @ sums), 0.0)
 
 
-def lines_of(solution: Array, count: int) -> Lines:
+def lines_of(solution: Array, count: int) -> ComplexArray:
     """Return the lines (K, H + 1) of coefficients (K, P), with their mean square."""
     size = 2 * count + 1
     phasors = (solution[:, 1:size:2] + 1j * solution[:, 2:size:2]) / np.sqrt(2.0)
     return np.column_stack([solution[:, :1].astype(np.complex128), phasors])
 
 
-def _flat(phasors: Lines) -> Array:
+def _flat(phasors: ComplexArray) -> Array:
     """Return sums over cosines and negative sines (K, 1 + 2 H) from those over exp(i k w t)."""
     pairs = np.stack([phasors[:, 1:].real, -phasors[:, 1:].imag], axis=-1)
     return np.column_stack([phasors[:, 0].real, pairs.reshape(phasors.shape[0], -1)])
-
-
-def _blocks(time: Array, frequency: float, count: int) -> Iterator[tuple[slice, Lines]]:
-    """Yield blocks of samples, each with its harmonics exp(i k w t), (H + 1, B)."""
-    for first in range(0, time.size, _BLOCK):
-        inside = slice(first, min(first + _BLOCK, time.size))
-        base = np.exp(2j * np.pi * frequency * time[inside])
-        waves = np.empty((count + 1, base.size), dtype=np.complex128)
-        waves[0] = 1.0
-        for k in range(1, count + 1):
-            np.multiply(waves[k - 1], base, out=waves[k])
-        yield inside, waves

@@ -12,7 +12,7 @@ from discover.motion_fit.harmonic import RELATIVE_FLOOR, moving, observe_sine
 from discover.motion_fit.harmonic_lines import LineSums, lines_of
 from discover.motion_fit.observation import Observation
 from discover.records import LongRecord, Piece, Record
-from discover.sine_fit import SineFit, fit_long_sine
+from discover.sine_fit import SineFit, fit_long_sine, moments
 from models.checks import Array, InputError
 
 
@@ -61,12 +61,12 @@ def observe_long_sine(
 
     def clear() -> Iterator[tuple[Array, Array]]:
         for piece in steady():
-            kept = moving(piece.time, fit.frequency, fit.coefficients)
+            kept = moving(moments(piece.time), fit.frequency, fit.coefficients)
             time, force = piece.time[kept], piece.force[kept]
             fitted.add(time, force)
             yield time, force
 
-    ends = fit.last[moving(fit.last, fit.frequency, fit.coefficients)]
+    ends = fit.last[moving(moments(fit.last), fit.frequency, fit.coefficients)]
     last = float(ends[-1] if ends.size else fit.last[-1])
     sums = cycle_sums(clear(), fit.frequency, float(first_part.time[0]), last)
     solution, left = fitted.solve()

@@ -13,10 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from discover.motion_fit.harmonic_lines import harmonic_lines
 from discover.motion_fit.noise import power_density
-from discover.sine_fit import harmonic_design
+from discover.sine_fit import harmonic_design, moments
 from models.checks import Array
 from models.compiled import compiled
+from models.fractional.window import hann_window
 
 FEWEST_CYCLES = 2.5
 _ENOUGH_CYCLES = 6.0
@@ -101,7 +103,7 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     frequencies, density = power_density(whole, step)
     share = np.zeros(whole.size)
     share[at] = kept
-    taper = np.hanning(whole.size + 2)[1:-1] ** 2
+    taper = hann_window(whole.size + 2)[1:-1] ** 2
     width = float(frequencies[1])
     gain = _response(same, time, np.flatnonzero(kept), width, frequencies.size)
     if cycles < _MANY_CYCLES:
@@ -126,10 +128,8 @@ def _without_lowest(time: Array, force: Array, frequency: float, step: float) ->
     A straight line over one sample's width does not miss the curvature of what is left.
     """
     count = int(np.clip(_RESOLVED / (step * frequency), 1, min(_HARMONICS, time.size // 8)))
-    design = harmonic_design(time, frequency, count)
-    found = np.linalg.solve(design.T @ design, design.T @ force)
-    periodic = 2 * count + 1
-    return np.asarray(force - design[:, :periodic] @ found[:periodic])
+    fit = harmonic_lines(moments(time), frequency, count, middle=None)
+    return np.asarray(force - fit.fitted(fit.solve(force[None])[0]))
 
 
 def _changing(samples: int) -> int:

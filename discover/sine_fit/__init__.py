@@ -1,8 +1,23 @@
 """Least-squares fit of a sine record: frequency, offset, trend and harmonics."""
 
-from discover.sine_fit.design import harmonic_design, harmonic_series
-from discover.sine_fit.fit import fit_sine
+from discover.sine_fit.design import ComplexArray, harmonic_design, harmonic_series
+from discover.sine_fit.fit import FEW_CYCLES, fit_sine, strongest_line
+from discover.sine_fit.harmonic_sums import Harmonics, Moments, columns_of, moments
 from discover.sine_fit.long_fit import LongFit, fit_long_sine
 from discover.sine_fit.solution import SineFit
 
-__all__ = ["LongFit", "SineFit", "fit_long_sine", "fit_sine", "harmonic_design", "harmonic_series"]
+__all__ = [
+    "FEW_CYCLES",
+    "ComplexArray",
+    "Harmonics",
+    "LongFit",
+    "Moments",
+    "SineFit",
+    "columns_of",
+    "fit_long_sine",
+    "fit_sine",
+    "harmonic_design",
+    "harmonic_series",
+    "moments",
+    "strongest_line",
+]

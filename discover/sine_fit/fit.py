@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.fft import next_fast_len, rfft
 
 from discover.sine_fit.design import harmonic_design
-from discover.sine_fit.solution import SineFit, Solution, frequency_column, solve
+from discover.sine_fit.harmonic_sums import Moments, moments
+from discover.sine_fit.solution import Basis, SineFit, Solution
 from models.checks import Array, InputError, finite_array, number
+from models.fractional.window import hann_window
 
-_SCAN_CYCLES = 12.0  # below this many cycles a spectrum's peak is off by its own mirror image
+FEW_CYCLES = 12.0  # below this many cycles a spectrum's peak is off by its own mirror image
 
 
 def fit_sine(
@@ -20,6 +20,7 @@ def fit_sine(
     x: ArrayLike,
     *,
     frequency: float | None = None,
+    near: float | None = None,
     harmonics: int = 7,
     where: str = "",
 ) -> SineFit:
@@ -38,6 +39,8 @@ def fit_sine(
         Signal whose fundamental is its strongest line.
     frequency : float, optional
         Hz; held exactly where given, found where not.
+    near : float, optional
+        Hz, to half a cycle over the record: where the search begins, found where not given.
     harmonics : int, optional
         The highest harmonic tried, lowered where the sampling does not resolve it.
     where : str, optional
@@ -70,7 +73,8 @@ def fit_sine(
     if t.shape != y.shape:
         raise InputError("x", expected=f"of shape {t.shape}", found=f"{y.shape}", where=where)
     middle = float(t.mean())
-    tau = t - middle
+    at = moments(t).since(middle)
+    tau = at.time
     duration = float(t[-1] - t[0])
     if not duration > 0.0 or np.any(np.diff(t) <= 0.0):
         raise InputError("time", expected="strictly increasing", found="a step <= 0", where=where)
@@ -81,22 +85,23 @@ def fit_sine(
     z = (y - offset) / scale
     found = frequency is None
     if frequency is None:
-        f = _start(tau, z, duration)
+        f = _start(tau, z, duration) if near is None else near
         short_tau, short_z = _block_means(tau, z, round(t.size / (duration * f)) // 64)
+        short = moments(short_tau)
         orders = allowed_harmonics(min(harmonics, 3), f, short_tau.size, duration)
-        f = _refine(short_tau, short_z, f, orders, settled=1e-6)
+        f = _refine(short, short_z, f, orders, settled=1e-6)
     else:
         f = number("frequency", frequency, above=0.0, where=where)
     orders = allowed_harmonics(harmonics, f, t.size, duration)
     if found and len(orders) > 3:
         orders_short = allowed_harmonics(harmonics, f, short_tau.size, duration)
-        f = _refine(short_tau, short_z, f, orders_short, settled=1e-6)
-    solution = Solution(tau, z, f, orders, with_frequency=False)
+        f = _refine(short, short_z, f, orders_short, settled=1e-6)
+    solution = Solution(at, z, f, orders, with_frequency=False)
     kept, keep_trend = solution.significant()
     if found:
-        f = _refine(tau, z, f, kept, trend=keep_trend)
+        f = _refine(at, z, f, kept, trend=keep_trend)
     if found or (kept, keep_trend) != (orders, True):
-        solution = Solution(tau, z, f, kept, trend=keep_trend, with_frequency=found)
+        solution = Solution(at, z, f, kept, trend=keep_trend, with_frequency=found)
     return solution.result(middle, offset, scale)
 
 
@@ -129,19 +134,39 @@ def _start(tau: Array, z: Array, duration: float) -> float:
     )
     slope = (grid @ even) / (grid @ grid)
     padded = next_fast_len(4 * size, real=True)
-    spectrum = np.abs(rfft((even - even.mean() - slope * grid) * np.hanning(size), padded))
+    tapered = (even - even.mean() - slope * grid) * hann_window(size)
     bin_width = (size - 1) / duration / padded
-    lowest = max(1, int(0.5 / duration / bin_width))
-    peak = lowest + int(np.argmax(spectrum[lowest:]))
+    start = strongest_line(np.abs(rfft(tapered, padded)) ** 2, bin_width, duration)
+    return start if start * duration >= FEW_CYCLES else _scan(tau, z, start, duration)
+
+
+def strongest_line(power: Array, width: float, duration: float) -> float:
+    """Return the frequency of the strongest line, Hz, between bins of a spectrum.
+
+    Parameters
+    ----------
+    power : ndarray, shape (B,)
+        Of the signal with a window of Hann.
+    width : float
+        Hz from bin to bin.
+    duration : float
+        s, of the signal: what is slower than half a cycle is no line.
+
+    Examples
+    --------
+    >>> time = np.arange(400) / 100.0
+    >>> tapered = np.sin(2 * np.pi * 7.1 * time) * np.hanning(400)
+    >>> round(strongest_line(np.abs(np.fft.rfft(tapered)) ** 2, 0.25, 4.0), 2)
+    7.1
+    """
+    lowest = max(1, int(0.5 / duration / width))
+    peak = lowest + int(np.argmax(power[lowest:]))
     shift = 0.0
-    if 0 < peak < spectrum.size - 1 and spectrum[peak - 1 : peak + 2].min() > 0.0:
-        a, b, c = np.log(spectrum[peak - 1 : peak + 2])
+    if 0 < peak < power.size - 1 and power[peak - 1 : peak + 2].min() > 0.0:
+        a, b, c = np.log(power[peak - 1 : peak + 2])
         curvature = a - 2.0 * b + c
         shift = 0.5 * (a - c) / curvature if curvature < 0.0 else 0.0
-    start = (peak + shift) * bin_width
-    if start * duration >= _SCAN_CYCLES:
-        return float(start)
-    return _scan(tau, z, start, duration)
+    return float((peak + shift) * width)
 
 
 def _scan(tau: Array, z: Array, start: float, duration: float) -> float:
@@ -160,31 +185,28 @@ def _scan(tau: Array, z: Array, start: float, duration: float) -> float:
 
 
 def _refine(
-    tau: Array,
+    at: Moments,
     z: Array,
     frequency: float,
-    orders: Sequence[int],
+    orders: tuple[int, ...],
     *,
     trend: bool = True,
     settled: float = 1e-10,
 ) -> float:
     """Return the frequency at the least-squares minimum, to `settled` rad over the record."""
-    duration = float(tau[-1] - tau[0])
+    duration = float(at.time[-1] - at.time[0])
     lowest = 0.3 / duration
     omega, last_cost, step = 2.0 * np.pi * frequency, np.inf, 0.0
     for _ in range(25):
-        design = harmonic_design(tau, omega / (2.0 * np.pi), orders, trend=trend)
-        beta, _ = solve(design, z)
-        residual = z - design @ beta
+        basis = Basis(at, omega / (2.0 * np.pi), orders, trend=trend)
+        beta, _, residual = basis.solve(z)
         cost = float(residual @ residual)
         if cost > last_cost * (1.0 + 1e-12) and abs(step) * duration > 1e-9:
             step *= 0.5
             omega -= step
             continue
         last_cost = cost
-        column = frequency_column(tau, design, beta, orders)
-        full = np.column_stack([design, column])
-        step = float(solve(full, residual)[0][-1])
+        step = float(basis.solve(residual, beta)[0][-1])
         step = float(np.clip(step, -1.5 / duration, 1.5 / duration))
         step = max(step, 2.0 * np.pi * lowest - omega)
         omega += step

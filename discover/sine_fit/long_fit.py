@@ -10,6 +10,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from discover.sine_fit.design import ComplexArray, harmonic_design
 from discover.sine_fit.fit import allowed_harmonics
+from discover.sine_fit.harmonic_sums import moments
 from discover.sine_fit.solution import SineFit, Solution, frequency_column, significant
 from models.checks import Array, InputError
 
@@ -147,8 +148,9 @@ def _local_noise(
         max(orders), head.frequency, time.size, float(time[-1] - time[0])
     )
     solution = Solution(
-        time - time.mean(), x - x.mean(), head.frequency, tried, with_frequency=False
-    )
+        moments(time).since(float(time.mean())), x - x.mean(), head.frequency, tried,
+        with_frequency=False,
+    )  # fmt: skip
     return {k: solution.local.get(k, solution.total) for k in (0, *orders)}
 
 

@@ -10,8 +10,11 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from discover.sine_fit.design import ComplexArray, harmonic_design
+from discover.sine_fit.harmonic_sums import Columns, Harmonics, Moments, columns_of
 from models.checks import Array
+from models.fractional.window import hann_window
 
+_NEAREST = 24  # bins whose median is the noise beside a harmonic
 _NEGLIGIBLE = 1e-12  # of the fundamental: rounding, not a harmonic
 
 
@@ -69,22 +72,94 @@ class SineFit:
         }
 
 
-def solve(design: Array, y: Array) -> tuple[Array, Array]:
-    """Return the least-squares solution and the inverse of the normal matrix."""
-    norms = np.sqrt(np.einsum("ij,ij->j", design, design))
-    gram = (design.T @ design) / np.outer(norms, norms)
-    values = np.linalg.eigvalsh(gram)
-    if values[0] > 1e-6 * values[-1]:  # nearly orthogonal: squaring the condition costs nothing
-        factor = cho_factor(gram)
-        beta = cho_solve(factor, (design.T @ y) / norms) / norms
-        beta = beta + cho_solve(factor, (design.T @ (y - design @ beta)) / norms) / norms
-        inverse = cho_solve(factor, np.eye(norms.size))
-    else:
-        u, s, vt = np.linalg.svd(design / norms, full_matrices=False)
-        s = np.maximum(s, 1e-13 * s[0])
-        beta = vt.T @ ((u.T @ y) / s) / norms
-        inverse = (vt.T / s**2) @ vt
-    return beta, inverse / np.outer(norms, norms)
+class Basis:
+    """Mean, harmonics and perhaps a trend at samples, as products alone: no column is formed."""
+
+    def __init__(
+        self, at: Moments, frequency: float, orders: tuple[int, ...], *, trend: bool
+    ) -> None:
+        self.at, self.frequency, self.orders, self.trend = at, frequency, orders, trend
+        self.columns = columns_of(orders, trend=trend)
+        self._harmonics = Harmonics(at, frequency)
+        self._own = self._harmonics.own(2 * max(orders), powers=3)
+
+    def solve(self, y: Array, beta: Array | None = None) -> tuple[Array, Array, Array]:
+        """Return least-squares coefficients, the inverse normal matrix, and what is left of y.
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+            Signal.
+        beta : ndarray, shape (C,), optional
+            Coefficients whose derivative by angular frequency is a further column.
+        """
+        columns = self.columns if beta is None else self._turning(beta)
+        gram = columns.products(self._own)
+        if beta is not None:
+            gram = _last_as_one(_last_as_one(gram, self.columns.size).T, self.columns.size)
+        norms = np.sqrt(np.diagonal(gram))
+        gram = gram / np.outer(norms, norms)
+        values = np.linalg.eigvalsh(gram)
+        if values[0] > 1e-6 * values[-1]:  # nearly orthogonal: squaring the condition costs nothing
+            factor = cho_factor(gram)
+            solution, left = np.zeros(norms.size), y
+            for _ in range(2):
+                solution = solution + cho_solve(factor, self._along(columns, left) / norms) / norms
+                left = y - self._fitted(solution, beta)
+            inverse = cho_solve(factor, np.eye(norms.size))
+        else:
+            design = self._design(beta)
+            u, s, vt = np.linalg.svd(design / norms, full_matrices=False)
+            s = np.maximum(s, 1e-13 * s[0])
+            solution = vt.T @ ((u.T @ y) / s) / norms
+            inverse = (vt.T / s**2) @ vt
+            left = y - design @ solution
+        return solution, inverse / np.outer(norms, norms), left
+
+    def _along(self, columns: Columns, y: Array) -> Array:
+        """Return products of columns with a signal; beyond the basis' own they are one."""
+        highest, powers = max(self.orders), 1 + int(columns.power.max())
+        sums = self._harmonics.sums(y[None], highest, powers=powers)
+        return _last_as_one(columns.along(sums)[0], self.columns.size)
+
+    def _turning(self, beta: Array) -> Columns:
+        """Return the columns, and those whose sum is the derivative by angular frequency."""
+        k = np.array(self.orders)
+        turning = Columns(k, np.ones_like(k), 1j * k * self._phasors(beta)[k])
+        return self.columns.followed_by(turning)
+
+    def _fitted(self, solution: Array, beta: Array | None) -> Array:
+        """Return what coefficients make of the columns, (N,)."""
+        size = self.columns.size
+        fitted = self._harmonics.series(self._phasors(solution))
+        if self.trend:
+            fitted += solution[size - 1] * self.at.time
+        if beta is not None:
+            turning = 1j * np.arange(max(self.orders) + 1) * self._phasors(beta)
+            fitted += solution[-1] * self.at.time * self._harmonics.series(turning)
+        return fitted
+
+    def _phasors(self, solution: Array) -> ComplexArray:
+        phasors = np.zeros(max(self.orders) + 1, dtype=np.complex128)
+        phasors[0] = solution[0]
+        for i, k in enumerate(self.orders):
+            phasors[k] = complex(solution[1 + 2 * i], solution[2 + 2 * i])
+        return phasors
+
+    def _design(self, beta: Array | None) -> Array:
+        tau = self.at.time
+        design = harmonic_design(tau, self.frequency, self.orders)
+        parts = [design, tau[:, None]] if self.trend else [design]
+        if beta is not None:
+            parts.append(frequency_column(tau, design, beta, self.orders)[:, None])
+        return np.concatenate(parts, axis=1)
+
+
+def _last_as_one(values: Array, size: int) -> Array:
+    """Return rows (C, ...) of which those from `size` on, where there are any, are added up."""
+    if values.shape[0] == size:
+        return values
+    return np.concatenate([values[:size], values[size:].sum(axis=0, keepdims=True)])
 
 
 def frequency_column(tau: Array, design: Array, beta: Array, orders: Sequence[int]) -> Array:
@@ -132,7 +207,7 @@ class Solution:
 
     def __init__(
         self,
-        tau: Array,
+        at: Moments,
         z: Array,
         frequency: float,
         orders: tuple[int, ...],
@@ -140,14 +215,14 @@ class Solution:
         trend: bool = True,
         with_frequency: bool,
     ) -> None:
-        self.tau, self.z, self.frequency, self.orders, self.trend = tau, z, frequency, orders, trend
-        design = harmonic_design(tau, frequency, orders, trend=trend)
-        self.beta, inverse = solve(design, z)
-        self.residual = z - design @ self.beta
+        self.tau, self.z, self.frequency, self.orders, self.trend = (
+            at.time, z, frequency, orders, trend
+        )  # fmt: skip
+        basis = Basis(at, frequency, orders, trend=trend)
+        self.beta, inverse, self.residual = basis.solve(z)
         self.with_frequency = with_frequency
         if with_frequency:
-            column = frequency_column(tau, design, self.beta, orders)
-            inverse = solve(np.column_stack([design, column]), z)[1]
+            inverse = basis.solve(self.residual, self.beta)[1]
         self.variance = np.diag(inverse)
         self.size = self.beta.size + int(with_frequency)
         self._measure_noise()
@@ -158,7 +233,7 @@ class Solution:
         freedom = max(n - self.size, 1)
         self.total = float(self.residual @ self.residual) / freedom
         duration = float(self.tau[-1] - self.tau[0])
-        window = np.hanning(n)
+        window = hann_window(n)
         density = np.abs(np.fft.rfft(self.residual * window)) ** 2 / float(window @ window)
         bins = np.arange(density.size) * (n - 1) / n  # in units of 1/duration
         cycles = self.frequency * duration
@@ -172,8 +247,11 @@ class Solution:
         self.white = float(np.median(levels) / np.log(2.0))
         self.local = {}
         for k in (0, *self.orders):
-            near = np.argsort(np.abs(positions - k * cycles), kind="stable")[:24]
-            self.local[k] = float(np.median(levels[near]) / np.log(2.0))
+            at = int(np.searchsorted(positions, k * cycles))
+            beside = slice(max(at - _NEAREST, 0), at + _NEAREST)
+            distance = np.abs(positions[beside] - k * cycles)
+            near = np.argsort(distance, kind="stable")[:_NEAREST]
+            self.local[k] = float(np.median(levels[beside][near]) / np.log(2.0))
 
     def significant(self) -> tuple[tuple[int, ...], bool]:
         """Return the harmonics that stand out of the noise, and whether the trend does."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import scipy.fft
@@ -105,8 +106,37 @@ def band_limited_derivative(
     >>> bool(np.max(np.abs(v / 30 - np.cos(30 * t))[300:-300]) < 5e-3)
     True
     """
+    return band_limited(x, dt, cutoff=cutoff, edge_noise=edge_noise)(orders)
+
+
+def band_limited(
+    x: ArrayLike, dt: float, *, cutoff: float, edge_noise: float = 1e-6
+) -> Callable[[ArrayLike], Array]:
+    """Return what differentiates records below a cut-off; their spectrum is taken once.
+
+    Parameters
+    ----------
+    x, dt, cutoff, edge_noise
+        As of `band_limited_derivative`.
+
+    Returns
+    -------
+    callable
+        Maps orders (K,) to derivatives (K, ..., N).
+
+    Raises
+    ------
+    InputError
+        As `band_limited_derivative`; for orders where they are given.
+
+    Examples
+    --------
+    >>> t = np.arange(2000) / 1000
+    >>> differentiate = band_limited(np.sin(30 * t), 1e-3, cutoff=10.0)
+    >>> differentiate([0.5, 1.0]).shape
+    (2, 2000)
+    """
     values, step = checked_record(x, dt, min_samples=4)
-    alpha, _ = checked_orders(orders)
     limit = number("cutoff", cutoff, above=0.0, at_most=0.5 / step)
     samples = values.shape[-1]
     rows = values.reshape(-1, samples)
@@ -128,22 +158,30 @@ def band_limited_derivative(
     )[:, ::-1]
     frequency = scipy.fft.rfftfreq(length, step)
     frequency = frequency[: np.searchsorted(frequency, TRANSITION * limit) + 1]
-    factors = harmonic_factors(alpha, 2.0 * np.pi * frequency) * low_pass_gain(frequency, limit)
     # Beyond them nothing passes.
-    spectrum = scipy.fft.rfft(extended, axis=-1)[:, : frequency.size]
-    out = np.empty((alpha.size, *rows.shape))
-    for k in range(alpha.size):
-        out[k] = scipy.fft.irfft(factors[k] * spectrum, n=length, axis=-1)[:, :samples]
-        if alpha[k] == 0.0:
-            out[k] += level
-    return out.reshape(alpha.size, *values.shape)
+    spectrum = scipy.fft.rfft(extended, axis=-1)[:, : frequency.size].copy()
+    shape = values.shape
+
+    def differentiate(orders: ArrayLike) -> Array:
+        alpha, _ = checked_orders(orders)
+        factors = harmonic_factors(alpha, 2.0 * np.pi * frequency)
+        factors = factors * low_pass_gain(frequency, limit)
+        out = np.empty((alpha.size, spectrum.shape[0], samples))
+        for k in range(alpha.size):
+            out[k] = scipy.fft.irfft(factors[k] * spectrum, n=length, axis=-1)[:, :samples]
+            if alpha[k] == 0.0:
+                out[k] += level
+        return out.reshape(alpha.size, *shape)
+
+    return differentiate
 
 
 def _out_of_band(centred: Array, band: float) -> Array:
     """Rms of what the low-pass removes altogether, over the rms of all, (R,)."""
     samples = centred.shape[1]
-    power = np.abs(scipy.fft.rfft(centred * kaiser_window(samples, _KAISER))) ** 2
-    above = power[:, scipy.fft.rfftfreq(samples) > TRANSITION * band].sum(axis=1)
+    length = int(scipy.fft.next_fast_len(samples, real=True))
+    power = np.abs(scipy.fft.rfft(centred * kaiser_window(samples, _KAISER), length)) ** 2
+    above = power[:, scipy.fft.rfftfreq(length) > TRANSITION * band].sum(axis=1)
     share = np.sqrt(above / np.maximum(power.sum(axis=1), 1e-300))
     return np.asarray(np.minimum(share, 1.0))
 
