@@ -11,6 +11,7 @@ from discover.data_check.plan import plan_of
 from discover.data_check.result import AddedTest, Conditioning, DataCheck, Inseparable, Pair
 from discover.data_check.separation import expected_pairs, inseparable_pairs
 from discover.data_check.sizes import size_findings
+from discover.data_check.together import Differing, differing_records
 from discover.motion_fit import observe_all
 from discover.record_checks import RecordCheck, check_records
 from discover.records import Campaign, Finding, checked_campaign
@@ -52,26 +53,34 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
     campaign = checked_campaign(campaign)
     observations = observe_all(campaign.records, jobs)
     judged = check_records(campaign, observations)
-    found = [*size_findings(campaign, judged.records), *_plan_findings(judged.records)]
-    findings = tuple(sorted((*judged.findings, *found), key=lambda f: _LEVELS.index(f.level)))
     rows: tuple[RecordRows, ...] = ()
+    differing: tuple[Differing, ...] = ()
     structures: tuple[Conditioning, ...] = ()
     pairs: tuple[Pair, ...] = ()
     inseparable: tuple[Inseparable, ...] = ()
     more: AddedTest | None = None
     if campaign.fitted:
         rows = tuple(record_rows(o) for o in observations)
+        differing = differing_records(rows)
         plan = plan_of([r for r in rows if not r.observation.held_out])
         structures = conditioning(plan)
         pairs = expected_pairs(plan)
         inseparable = inseparable_pairs(pairs, plan)
         more = added_test(pairs, plan, campaign.rig)
+    found = [
+        *judged.findings,
+        *size_findings(campaign, judged.records),
+        *(d.finding for d in differing),
+        *_plan_findings(judged.records),
+    ]
+    findings = tuple(sorted(found, key=lambda f: _LEVELS.index(f.level)))
     return DataCheck(
         title=campaign.title,
         content_hash=campaign.content_hash,
         seed=seed,
         records=judged.records,
         findings=findings,
+        differing=differing,
         structures=structures,
         pairs=pairs,
         inseparable=inseparable,

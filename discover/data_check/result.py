@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
+from discover.data_check.together import Differing
 from discover.figure_data import PlanFigureData
 from discover.header import document_header
 from discover.record_checks import RecordCheck
@@ -154,6 +155,8 @@ class DataCheck:
     """In the campaign's order."""
     findings: tuple[Finding, ...]
     """On the records and on the plan, in words; errors first."""
+    differing: tuple[Differing, ...]
+    """Records that do not belong with others."""
     structures: tuple[Conditioning, ...]
     """What the tests determine of each; none where no record may be fitted."""
     pairs: tuple[Pair, ...]
@@ -186,6 +189,8 @@ class DataCheck:
             "passed": self.passed,
             "records": [r.to_dict() for r in self.records],
             "findings": [f.to_dict() for f in self.findings],
+            "belongs_together": not self.differing,
+            "differing": [d.to_dict() for d in self.differing],
             "structures": [s.to_dict() for s in self.structures],
             "pairs": [pair.to_dict() for pair in self.pairs],
             "inseparable": [pair.to_dict() for pair in self.inseparable],
