@@ -12,6 +12,8 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from discover.answer_html import answer_html
+from discover.words import quantity
 from models.checks import Array, InputError, finite_array, shown
 from models.device import Device
 
@@ -345,6 +347,25 @@ class Campaign:
         if worst:
             told += f", {len(worst)} warning{'' if len(worst) == 1 else 's'}"
         return f"<Campaign {shown(self.title)}: {told}>"
+
+    def _repr_html_(self) -> str:
+        """Return the campaign as a notebook shows it: its findings, and a row for every record."""
+        lines = [f"Campaign: {repr(self).removeprefix('<Campaign ').removesuffix('>')}"]
+        for f in self.findings:
+            lines.append(f"{f.level.capitalize()}: {f'{f.record}: ' if f.record else ''}{f.text}")
+        header = ("record", "samples", "length", "greatest force", "greatest displacement", "use")
+        rows = [
+            [
+                r.file,
+                str(r.samples),
+                quantity(r.step * (r.samples - 1), "s"),
+                quantity(float(np.abs(r.force).max()), "N"),
+                "–" if (x := r.displacement) is None else quantity(float(np.abs(x).max()), "m"),
+                "held out" if r.held_out else "fitted",
+            ]
+            for r in self.records
+        ]
+        return answer_html(self.title, lines, header, rows)
 
 
 def checked_campaign(given: object) -> Campaign:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from discover.words import quantity
 from models.terms import TERMS
+from models.terms.term import Parameter
 
 _ALWAYS = ("order", "exponent")  # shown at their defaults too
 _AFTER = {"over": "tests", "relative_speed": "of the test's greatest speed"}
@@ -21,6 +22,9 @@ _BETWEEN_TESTS = ("from_test", *_OF_A_TEST)
 
 def shape(term: Mapping[str, Any]) -> str:
     """Return a term's shape parameters with their intervals.
+
+    The end of an interval that lies at a bound of what is sensible, or beyond, says nothing of the
+    value and is not told.
 
     Examples
     --------
@@ -38,6 +42,11 @@ def shape(term: Mapping[str, Any]) -> str:
     'in test 3 only'
     >>> shape({"id": "sensor-drift", "over": 0.0, "power": 1.0, "only": 3.0})
     'power 1, in test 3 only'
+    >>> stop = {"id": "series-compliance", "load_share": 0.4, "half_load": 900.0}
+    >>> shape({**stop, "load_share_interval": [-2.6, 0.97]})
+    'half load 900 N, load share 0.4 (at least −2.6)'
+    >>> shape({**stop, "load_share_interval": [-3.4, 0.97]})
+    'half load 900 N, load share undetermined'
     """
     parts = []
     known = TERMS.get(str(term.get("id")))
@@ -52,8 +61,10 @@ def shape(term: Mapping[str, Any]) -> str:
         covered = described and not parameter.fitted and name not in _BETWEEN_TESTS
         if covered or (alone and name in _OF_A_TEST):
             continue
-        ends = term.get(f"{name}_interval")
+        ends = _told_ends(parameter, term.get(f"{name}_interval"))
         text = quantity(value, parameter.unit or _AFTER.get(name, ""), ends, 4)
+        if ends == (None, None):
+            text = "undetermined"
         parts.append(f"{_NAMES.get(name, name.replace('_', ' '))} {text}")
     if known is not None and known.described is not None:
         given = {p.name: float(term.get(p.name, p.default)) for p in known.parameters}
@@ -62,3 +73,23 @@ def shape(term: Mapping[str, Any]) -> str:
         parts.append(f"in test {alone:g} only")
     return ", ".join(parts)
 
+
+
+def _told_ends(
+    parameter: Parameter, ends: Sequence[float | None] | None
+) -> tuple[float | None, float | None] | None:
+    """Return an interval without the ends that a parameter's bounds give and no record does.
+
+    Where the bounds are parts of a campaign's amplitude, of the lower one the sign alone is known.
+    """
+    if not ends:
+        return None
+    low, high = ends
+    least = parameter.lower if not parameter.scaled_by else min(0.0, parameter.lower)
+    most = None if parameter.scaled_by else parameter.upper
+    bounded = not parameter.scaled_by or parameter.lower >= 0.0
+    if low is not None and bounded and low <= least:
+        low = None
+    if high is not None and most is not None and high >= most:
+        high = None
+    return low, high

@@ -142,21 +142,37 @@ def probability(value: float | None) -> str:
 
 
 def interval(ends: Sequence[float | None] | None, digits: int = 3) -> str:
-    """Return an interval's ends; "" where there is none.
+    """Return an interval in words, None for an end that is open; "" where there is none.
 
     Examples
     --------
-    >>> interval([84.01, 117.3])
-    '84 to 117'
+    >>> interval([84.01, 117.3]), interval([84.01, None]), interval([None, None])
+    ('84 to 117', 'at least 84', 'undetermined')
     """
     if not ends:
         return ""
     low, high = ends
-    return f"{_end(low, '−∞', digits)} to {_end(high, '∞', digits)}"
+    if low is None and high is None:
+        return "undetermined"
+    if low is None:
+        return f"at most {significant(high, digits)}"
+    if high is None:
+        return f"at least {significant(low, digits)}"
+    return f"{significant(low, digits)} to {significant(high, digits)}"
 
 
-def _end(value: float | None, instead: str, digits: int) -> str:
-    return instead if value is None else significant(value, digits)
+def zero_possible(ends: Sequence[float | None] | None) -> bool:
+    """Return whether an interval holds zero: the size is then not told from none.
+
+    Examples
+    --------
+    >>> zero_possible([-0.01, 0.03]), zero_possible([0.01, None]), zero_possible(None)
+    (True, False, False)
+    """
+    if not ends:
+        return False
+    low, high = ends
+    return (low is None or low <= 0.0) and (high is None or high >= 0.0)
 
 
 def quantity(
@@ -178,7 +194,7 @@ def quantity(
     Examples
     --------
     >>> quantity(0.00226, "m/s", [0.0016, None]), quantity(8.6e-6, "m"), quantity(0.5, "s")
-    ('2.26 mm/s (1.6 to ∞)', '8.6 µm', '0.5 s')
+    ('2.26 mm/s (at least 1.6)', '8.6 µm', '0.5 s')
     >>> quantity(0.01, "1")
     '0.01'
     """

@@ -6,12 +6,13 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
+from discover.answer_html import answer_html
 from discover.data_check.together import Differing
 from discover.figure_data import PlanFigureData
 from discover.header import document_header
 from discover.record_checks import RecordCheck
 from discover.records import Finding
-from discover.words import counted
+from discover.words import counted, listed, percent, quantity, significant
 
 
 @dataclass(frozen=True)
@@ -174,6 +175,33 @@ class DataCheck:
         found = [counted(n, level) for level, n in levels.items()]
         told = ", ".join(["passed" if self.passed else "failed", *found])
         return f"<DataCheck of {self.title!r}: {counted(len(self.records), 'record')}, {told}>"
+
+    def _repr_html_(self) -> str:
+        """Return the answer as a notebook shows it: what was found, and a row for every record."""
+        lines = [f"Check: {'passed' if self.passed else 'failed'}"]
+        for f in self.findings:
+            lines.append(f"{f.level.capitalize()}: {f'{f.record}: ' if f.record else ''}{f.text}")
+        if self.inseparable:
+            pairs = listed(" and ".join(pair.structures) for pair in self.inseparable)
+            lines.append(f"Plan: these tests can't tell apart {pairs}")
+        if (test := self.added_test) is not None:
+            lines.append(
+                f"Test to add: {significant(test.frequency_hz, 3)} Hz at"
+                f" {quantity(test.amplitude_m, 'm')}"
+            )
+        header = ("record", "kind", "frequency", "amplitude", "samples", "noise of the force")
+        rows = [
+            [
+                r.file,
+                r.kind.kind,
+                "–" if r.frequency_hz is None else quantity(r.frequency_hz, "Hz"),
+                "–" if r.amplitude_m is None else quantity(r.amplitude_m, "m"),
+                str(r.samples),
+                percent(r.force_noise_percent),
+            ]
+            for r in self.records
+        ]
+        return answer_html(self.title, lines, header, rows)
 
     @property
     def passed(self) -> bool:

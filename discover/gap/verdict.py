@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from discover.words import (
@@ -13,6 +13,7 @@ from discover.words import (
     remainder_text,
     short_name,
     significant,
+    zero_possible,
 )
 
 CLOSED = 1.15
@@ -20,8 +21,8 @@ CLOSED = 1.15
 
 _VERDICTS = {
     "agrees": "model and measurement agree within the noise; nothing is missing",
-    "closed": "with {} added the gap is down to the noise",
-    "reduced": "with {} added the gap is smaller, but more is left than noise",
+    "closed": "with {} added the gap{} is down to the noise",
+    "reduced": "with {} added the gap{} is smaller, but more is left than noise",
     "unexplained": "something is missing that no effect in the catalogue explains",
 }
 _LINES_QUIET = "with {} added nothing more shows in the tests' own lines"
@@ -47,15 +48,26 @@ def verdict_lines(document: Mapping[str, Any]) -> list[str]:
     dropped = {name for r in document["rounds"] for name in r.get("dropped", ())}
     kept = [r for r in document["rounds"] if r["effect"] not in dropped]
     added = listed(short_name(str(r["effect"])) for r in kept)
-    lines = [f"Verdict: {verdict}: {_said(document, verdict).format(added)}."]
+    pooled = " over all tests" if len(document["records"]) > 1 else ""
+    lines = [f"Verdict: {verdict}: {_said(document, verdict).format(added, pooled)}."]
     if kept:
         lines.append(f"Missing: {listed(_missing(r) for r in kept)}.")
         for number, entry in enumerate(document["rounds"], start=1):
             lines.append(f"Round {number}: {round_text(entry)}.")
     held_out = document.get("final_held_out_gap_percent")
     left = f"; {percent(held_out)} on records that were not fitted" if held_out is not None else ""
-    lines.append(f"Gap: {_gaps(document)}{left}; noise {percent(document['noise_percent'])}.")
+    noise = f"noise {percent(document['noise_percent'])}"
+    lines.append(f"Gap: {_gaps(document)}{left}; {noise}{_worst(document['records'])}.")
     return [*lines, *_left_over(document)]
+
+
+def _worst(records: Sequence[Mapping[str, Any]]) -> str:
+    """Return the test that is farthest above its own noise, which pooling hides; "" for one."""
+    over = {r["file"]: r["gap_after_percent"] / max(r["noise_percent"], 1e-300) for r in records}
+    if len(over) < 2:
+        return ""
+    worst = max(over, key=lambda file: over[file])
+    return f"; of single tests {worst} is worst, {significant(over[worst], 3)} times its noise"
 
 
 def _said(document: Mapping[str, Any], verdict: str) -> str:
@@ -97,7 +109,8 @@ def _missing(entry: Mapping[str, Any]) -> str:
     """Return a name with what it can't be told apart from."""
     same = [short_name(str(e)) for e in entry.get("not_distinguishable_from") or ()]
     apart = f" (or {listed(same, last='or')}: not told apart)" if same else ""
-    return f"{short_name(str(entry['effect']))} {probability(entry['probability'])}{apart}"
+    size = " (its size is not told from zero)" if zero_possible(entry["interval"]) else ""
+    return f"{short_name(str(entry['effect']))} {probability(entry['probability'])}{size}{apart}"
 
 
 def round_text(entry: Mapping[str, Any]) -> str:

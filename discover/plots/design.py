@@ -71,13 +71,14 @@ def prices(document: Mapping[str, Any]) -> str:
         if abs(b["price_percent_per_percent"]) > 1e-3
     }
     with house_style():
-        drawing = new_figure(860, 90 + 30 * max(len(slopes), len(bounds), 3))
-        left, right = drawing.subplots(1, 2)
-        _bars(left, slopes, "Each 1 % of a dimension, all else kept")
-        if bounds:
-            _bars(right, bounds, "Each 1 % of a bound")
-        else:
-            right.set_axis_off()
+        # One above the other: beside each other they are too wide for a phone.
+        rows = [(slopes, "Each 1 % of a dimension")]
+        rows += [(bounds, "Each 1 % of a bound")] if bounds else []
+        lengths = [max(len(values), 3) for values, _ in rows]
+        drawing = new_figure(460, 80 * len(rows) + 30 * sum(lengths))
+        panels = drawing.subplots(len(rows), 1, squeeze=False, height_ratios=lengths)
+        for axes, (values, name) in zip(panels[:, 0], rows, strict=True):
+            _bars(axes, values, name)
         title = "Percent of critical frequency for one percent of each dimension and bound"
         return to_svg(drawing, name="prices", title=title)
 
@@ -92,8 +93,9 @@ def _bars(axes: Axes, values: Mapping[str, float], title: str) -> None:
     for place, value in zip(places, lengths, strict=True):
         inside = (3, 0) if value > 0 else (-3, 0)
         axes.annotate(
-            f"{value:+.2f}", (value, place), xytext=inside, textcoords="offset points",
-            ha="left" if value > 0 else "right", va="center", fontsize=8.5,
+            f"{value:+.2f}".replace("-", "−"), (value, place), xytext=inside,
+            textcoords="offset points", ha="left" if value > 0 else "right", va="center",
+            fontsize=8.5,
         )
     axes.margins(x=0.22)
     axes.set_title(title)

@@ -96,6 +96,7 @@ def environment() -> jinja2.Environment:
         quantity=words.quantity,
         probability=words.probability,
         interval=words.interval,
+        zero_possible=words.zero_possible,
         counted=words.counted,
         band_range=words.band_range,
         not_ruled_out=not_ruled_out,

@@ -14,7 +14,7 @@ from discover.study.options import StudyOptions
 from discover.study.prepare import Prepared, observation_findings
 from discover.study.result import Nuisance, StudyBand
 from discover.study.verdict import MOST_LEFT
-from discover.words import capitalize_first, listed, quantity, short_name
+from discover.words import capitalize_first, listed, quantity, short_name, zero_possible
 from models.cores import CORES
 from models.terms import TERMS
 
@@ -160,6 +160,8 @@ def _not_as_asked(
 def _about_nuisance(nuisance: Nuisance) -> Finding:
     term = TERMS[nuisance.id]
     size = quantity(nuisance.value, nuisance.unit, nuisance.interval)
+    if zero_possible(nuisance.interval):
+        size += ", which is not told from zero"
     return Finding(
         "note",
         f"{capitalize_first(short_name(nuisance.id))} may belong to a measuring channel:"

@@ -22,6 +22,7 @@ from discover.words import (
     remainder_text,
     short_name,
     significant,
+    zero_possible,
 )
 from models.cores import FRICTION, OTHER
 
@@ -110,8 +111,15 @@ def structure_name(band: Mapping[str, Any]) -> str:
 
 
 def _besides(band: Mapping[str, Any]) -> str:
-    """Return what the device has beside its structure, by name: the same in all bands."""
-    names = [short_name(str(e["id"])) for e in band.get("extras", ())]
+    """Return what the device has beside its structure, by name: the same in all bands.
+
+    An effect whose size may as well be zero is not stated.
+    """
+    names = [
+        short_name(str(e["id"]))
+        for e in band.get("extras", ())
+        if not zero_possible(e["interval"])
+    ]
     friction = band.get("friction") or {}
     if "presliding_displacement" in friction:
         names.insert(0, "presliding")
@@ -165,6 +173,8 @@ def extras_line(document: Mapping[str, Any]) -> str:
 def _extra(extra: Mapping[str, Any]) -> str:
     size = quantity(extra["coefficient"], extra["unit"], extra["interval"])
     text = f"{short_name(str(extra['id']))} {size}"
+    if zero_possible(extra["interval"]):
+        text = f"possibly {text}: its size is not told from zero"
     told = shape({key: value for key, value in extra.items() if not key.endswith("_interval")})
     if told:
         text += f", {told}"

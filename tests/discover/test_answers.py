@@ -172,3 +172,27 @@ def test_a_model_is_taken_by_name_or_file_as_the_command_takes_it(study, measure
 def test_friction_of_several_curves_is_one_row_in_a_notebook(study):
     curves = [t for t in study.bands[0].terms if t.fitted.id == "coulomb-friction"]
     assert study._repr_html_().count("<td>Coulomb friction, sign v</td>") == min(len(curves), 1)
+
+
+def test_a_campaign_and_its_check_show_every_record_in_a_notebook(measured):
+    check = discover.check_campaign(measured)
+    for value in (measured, check):
+        tree = ElementTree.fromstring(value._repr_html_())
+        cells = [row[0].text for row in tree.iterfind("./table[2]/tbody/tr")]
+        assert cells == [r.file for r in measured.records]
+    assert "exact records" in measured._repr_html_() and "held out" in measured._repr_html_()
+    assert ("Passed" in check._repr_html_()) == check.passed
+    for finding in check.findings:
+        assert finding.level.capitalize() in check._repr_html_()
+
+
+def test_what_a_notebook_shows_of_a_campaign_is_text_and_not_markup():
+    time = [0.01 * i for i in range(200)]
+    frame = {"time": time, "displacement": [t * t for t in time], "force": [5.0 - t for t in time]}
+    shown = discover.Campaign.from_frames({"<b>1</b>": frame}, title="a < b")._repr_html_()
+    assert "a &lt; b" in shown and "<b>" not in shown
+
+
+def test_what_python_prints_fits_on_a_screen(measured, study, gap):
+    values = (measured, measured.records[0], study, gap, discover.check_campaign(measured))
+    assert all(len(repr(v)) <= 400 and "\n" not in repr(v) for v in values)

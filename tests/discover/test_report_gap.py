@@ -47,7 +47,8 @@ def test_lines_name_effects_with_alternatives_and_both_gaps():
     )
     assert "; its shape holds; " in lines[3]
     assert lines[4] == (
-        "Gap: 18.3 % before, 1.2 % after; 1.3 % on records that were not fitted; noise 1.1 %."
+        "Gap: 18.3 % before, 1.2 % after; 1.3 % on records that were not fitted; noise 1.1 %;"
+        " of single tests 0.5hz-10mm.csv is worst, 1.19 times its noise."
     )
     assert lines[5] == (
         "Left over: of the force, beyond noise, 0.21 % (0.1 to 0.32 %); every record counts alike."
@@ -137,3 +138,25 @@ def test_a_model_that_agrees_only_when_refitted_is_not_said_to_agree_as_it_is():
     assert "with the model's own coefficients refitted" in refitted
     as_it_is = gap_lines({**document, "gap_percent": 1.3})[0]
     assert as_it_is.endswith("agree within the noise; nothing is missing.")
+
+
+def test_the_worst_test_stands_beside_the_pooled_gap():
+    document = sample_gap_document()
+    quiet = {"file": "slow.csv", "held_out": False, "gap_before_percent": 9.0}
+    quiet |= {"gap_after_percent": 1.5, "noise_percent": 1.0}
+    loud = {**quiet, "file": "fast.csv", "gap_after_percent": 4.0, "noise_percent": 4.0}
+    document |= {"verdict": "closed", "records": [loud, quiet]}
+    verdict, gap = (s for s in gap_lines(document) if s.startswith(("Verdict", "Gap")))
+    assert "the gap over all tests is down to the noise" in verdict
+    assert gap.endswith("; of single tests slow.csv is worst, 1.5 times its noise.")
+    alone = " ".join(gap_lines({**document, "records": [loud]}))
+    assert "worst" not in alone and "the gap is down to the noise" in alone
+
+
+def test_an_effect_whose_size_may_be_zero_is_said_to_be_so():
+    document = sample_gap_document()
+    document["rounds"] = [{**document["rounds"][0], "interval": [-3.0, 20.0]}]
+    (missing,) = (s for s in gap_lines(document) if s.startswith("Missing"))
+    assert "its size is not told from zero" in missing
+    document["rounds"] = [{**document["rounds"][0], "interval": [3.0, 20.0]}]
+    assert "told from zero" not in " ".join(gap_lines(document))
