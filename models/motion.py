@@ -8,8 +8,8 @@ band-limited scheme. A term only ever sees a `Motion`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,6 +49,13 @@ class Motion:
     """Number of the record in its campaign, from 1; 0 where it isn't known."""
     sampling: float = 0.0
     """s, sampling interval of the record that it belongs to; 0 where it is its own `step`."""
+    kept: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+    """What terms have found out about this motion, by module; it goes with the motion, and no copy
+    has it."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy, or another process, is given."""
+        return {**self.__dict__, "kept": {}}
 
     @property
     def step(self) -> float:

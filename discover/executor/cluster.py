@@ -16,7 +16,6 @@ from discover._version import __version__
 from discover.executor.interface import Lost, R, T
 from models.checks import InputError
 
-_PATIENCE = 10.0  # s, for the scheduler and for a first worker
 _one_at_a_time = threading.Lock()
 
 
@@ -74,7 +73,8 @@ def on_cluster(address: str) -> Iterator[Cluster]:
     Parameters
     ----------
     address : str
-        Of its scheduler.
+        Of its scheduler. It and a first worker are waited for as long as Dask's own setting says
+        (`distributed.comm.timeouts.connect`).
 
     Raises
     ------
@@ -84,6 +84,8 @@ def on_cluster(address: str) -> Iterator[Cluster]:
     """
     where = f"--cluster {address}"
     try:
+        import dask
+        from dask.utils import parse_timedelta
         from distributed import Client
     except ImportError:
         extra = "pip install 'inerter-discovery[distributed]'"
@@ -92,22 +94,23 @@ def on_cluster(address: str) -> Iterator[Cluster]:
         ) from None
     # It tells what is wrong in many lines; here it is one.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    patience = float(parse_timedelta(dask.config.get("distributed.comm.timeouts.connect")))
     try:
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+        client = Client(address, timeout=patience, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         reason = str(error).strip().splitlines()[0] if str(error).strip() else "no answer"
         raise InputError("scheduler", expected="reachable", found=reason, where=where) from None
     try:
-        _check_workers(client, where)
+        _check_workers(client, where, patience)
         yield Cluster(client, address)
     finally:
         client.close()
 
 
-def _check_workers(client: Any, where: str) -> None:
+def _check_workers(client: Any, where: str, patience: float) -> None:
     """Raise where there are no workers, or such as would give other answers."""
     try:
-        client.wait_for_workers(1, timeout=_PATIENCE)
+        client.wait_for_workers(1, timeout=patience)
     except TimeoutError:
         raise InputError("workers", expected="at least one", found="none", where=where) from None
     wanted = f"with inerter-discovery {__version__} installed"

@@ -264,7 +264,7 @@ def _path_of(folder: Path, name: str, *, where: str, hint: bool = True) -> Path:
             return target
         found = _kind(target) if inside else "outside of it"
         if hint and inside and not target.exists():
-            found += nearest(name, _names(root))
+            found += nearest(name, _names(root, root.stat().st_mtime_ns))
     except OSError as error:
         found = error.strerror or "an unreadable file"
     except (ValueError, RuntimeError) as error:  # a zero byte in the name, a loop of links
@@ -290,7 +290,8 @@ def _kind(target: Path, file: str = "a file") -> str:
 
 
 @lru_cache(maxsize=1)
-def _names(root: Path) -> tuple[str, ...]:
+def _names(root: Path, changed: int) -> tuple[str, ...]:
+    """Return what a folder holds since it `changed` (ns): listed once for thousands of records."""
     with os.scandir(root) as items:
         return tuple(item.name for item in items)
 

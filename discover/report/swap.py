@@ -28,8 +28,12 @@ def exchange(part: Path, target: Path) -> None:
     if not target.exists():
         part.rename(target)
         return
-    if _exchanged(part, target):
-        return  # the earlier content is in `part` now
+    if not _exchanged(part, target):  # else the earlier content is in `part` now
+        rename_twice(part, target)
+
+
+def rename_twice(part: Path, target: Path) -> None:
+    """Do what `exchange` does, of two folders that are there, without the system call."""
     with without_signals():
         old = target.with_name(f".{target.name}-old-{os.getpid()}")
         old.mkdir()

@@ -1,7 +1,7 @@
 """The device behind a joint: a spring, and the mass and resistances that fit its other force."""
 
-from dataclasses import dataclass, replace
-from typing import Any, Self
+from dataclasses import dataclass, field, replace
+from typing import Self
 from weakref import ReferenceType, ref
 
 import numpy as np
@@ -16,7 +16,7 @@ _RIDGE = 1e-12
 _LEAST_DRY = 1e-6  # of the force's root mean square
 _SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
 _REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
-_MOST_KNOWN = 128  # that are remembered
+_MOST_KNOWN = 32  # devices of one motion that are kept
 _CYCLE = 8192  # samples of a motion at most, whose columns are
 
 
@@ -60,13 +60,24 @@ class _Resistances:
         return found / self.scale[picked], misfit
 
 
-_Device = tuple[ReferenceType[Array], ReferenceType[Motion], Array]
-_DEVICES: dict[tuple[int, int, bool], _Device] = {}
-"""What was asked for last, by force and motion: the same devices are tried behind many joints."""
-_RESISTANCES: dict[int, tuple[ReferenceType[Motion], _Resistances]] = {}
-"""Likewise by motion."""
-_AT_REST: dict[int, tuple[ReferenceType[Motion], Motion]] = {}
-"""Likewise."""
+@dataclass
+class _Known:
+    """What was found out on a motion, which keeps it: one device is tried behind many joints."""
+
+    devices: dict[tuple[int, bool], tuple[ReferenceType[Array], Array]] = field(
+        default_factory=dict
+    )
+    """By the force's identity, and whether it came without a model."""
+    resistances: _Resistances | None = None
+    """None where they were not asked for, or the motion is long."""
+    still: Motion | None = None
+    """The same speeds without displacement; None likewise."""
+
+    @classmethod
+    def of(cls, motion: Motion) -> Self:
+        """Return what is known on a motion."""
+        known: Self = motion.kept.setdefault(__name__, cls())
+        return known
 
 
 def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> Array:
@@ -86,21 +97,17 @@ def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> 
         The device: what is lost without displacement is its spring's. At one frequency nothing
         else tells a spring from a mass.
     """
-    key = id(force), id(motion), force_of is None
-    known = _DEVICES.get(key)
-    if known is not None and known[0]() is force and known[1]() is motion:
-        return known[2]
+    devices, key = _Known.of(motion).devices, (id(force), force_of is None)
+    known = devices.get(key)
+    if known is not None and known[0]() is force:
+        return known[1]
     stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of)
     place = motion.displacement - motion.displacement.mean()
     found = np.append(_device(force - stiffness * place, motion), stiffness)
-    _forget_oldest(_DEVICES)
-    _DEVICES[key] = ref(force), ref(motion), found
+    if len(devices) >= _MOST_KNOWN:
+        devices.pop(list(devices)[0], None)  # threads may be here too
+    devices[key] = ref(force), found
     return found
-
-
-def _forget_oldest(known: dict[Any, Any]) -> None:
-    if len(known) >= _MOST_KNOWN:
-        known.pop(list(known)[0], None)  # threads may be here too
 
 
 def at_rest(motion: Motion) -> Motion:
@@ -108,13 +115,12 @@ def at_rest(motion: Motion) -> Motion:
 
     What a force loses in it is its springs'.
     """
-    known = _AT_REST.get(id(motion))
-    if known is not None and known[0]() is motion:
-        return known[1]
+    known = _Known.of(motion)
+    if known.still is not None:
+        return known.still
     still = replace(motion, displacement=np.zeros_like(motion.displacement))
     if still.displacement.size <= _CYCLE:
-        _forget_oldest(_AT_REST)
-        _AT_REST[id(motion)] = ref(motion), still
+        known.still = still
     return still
 
 
@@ -150,14 +156,13 @@ def _device(force: Array, motion: Motion) -> Array:
 
 def _resistances_of(motion: Motion) -> _Resistances:
     """Return what devices on a motion are made of, evaluated once."""
-    known = _RESISTANCES.get(id(motion))
-    if known is not None and known[0]() is motion:
-        return known[1]
+    known = _Known.of(motion)
+    if known.resistances is not None:
+        return known.resistances
     v = motion.velocity
     plain = np.stack([motion.acceleration, v, v * np.abs(v)])
     dry = np.tanh(v / (_REVERSALS[:, None] * float(np.abs(v).max())))
     found = _Resistances.of(plain, dry)
     if v.size <= _CYCLE:
-        _forget_oldest(_RESISTANCES)
-        _RESISTANCES[id(motion)] = ref(motion), found
+        known.resistances = found
     return found

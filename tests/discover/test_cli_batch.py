@@ -1,9 +1,11 @@
 import json
 import logging
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -65,45 +67,47 @@ def test_a_folder_is_the_one_that_discover_and_gap_write(fleet, whole, tmp_path)
         assert (tmp_path / alone / name).read_bytes() == (whole / here / name).read_bytes()
 
 
-def test_what_is_done_stays_and_what_failed_is_tried_again(fleet, whole, monkeypatch):
-    tried = []
-
-    def noted(item):
-        tried.append(item.folder.name)
-        return "still broken"
-
-    monkeypatch.setattr(batch_work, "_worked", noted)
-    before = content(whole / "d1")
-    assert main(["batch", str(fleet), "-o", str(whole), "--model", "ioim-laminar"]) == 1
-    assert tried == ["broken"]
-    assert content(whole / "d1") == before
-    monkeypatch.undo()
-    assert main(["batch", str(fleet), "-o", str(whole), "--model", "ioim-laminar"]) == 1
+def test_what_is_done_stays_and_what_failed_is_tried_again(fleet, tmp_path):
+    mine, out = tmp_path / "mine", tmp_path / "out"
+    shutil.copytree(fleet / "d1", mine / "d1")
+    shutil.copytree(fleet / "broken", mine / "broken")
+    assert main(["batch", str(mine), "-o", str(out)]) == 1
+    before = (out / "d1").stat()
+    record = next((fleet / "d2").glob("*.csv"))
+    shutil.copy(record, mine / "broken" / "gone.csv")
+    assert main(["batch", str(mine), "-o", str(out)]) == 0
+    assert (out / "broken" / "study.json").is_file()
+    after = (out / "d1").stat()
+    assert (after.st_ino, after.st_mtime_ns) == (before.st_ino, before.st_mtime_ns)
 
 
-def test_an_interrupted_batch_goes_on_and_ends_in_the_same_table(
-    fleet, whole, tmp_path, monkeypatch, capsys
-):
-    worked, done = batch_work._worked, []
+def interrupted_after(folder, command):
+    """Run a command that Ctrl-C interrupts as soon as a folder is there; return its exit code."""
+    ended = threading.Event()
 
-    def interrupted(item):
-        """Do one campaign a run; the next one is interrupted."""
-        if done:
-            raise KeyboardInterrupt
-        error = worked(item)
-        done.append(item)
-        return error
+    def watch():
+        while not ended.wait(0.002):
+            if folder.exists():
+                signal.raise_signal(signal.SIGINT)
+                return
 
-    monkeypatch.setattr(batch_work, "_worked", interrupted)
-    command = ["batch", str(fleet), "-o", str(tmp_path / "out"), "--model", "ioim-laminar"]
-    codes = []
-    while (code := main(command)) == 130:
-        codes.append(code)
-        done.clear()
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    try:
+        return main(command)
+    finally:
+        ended.set()
+        watcher.join()
+
+
+def test_an_interrupted_batch_goes_on_and_ends_in_the_same_table(fleet, whole, tmp_path, capsys):
+    out = tmp_path / "out"
+    command = ["batch", str(fleet), "-o", str(out), "--model", "ioim-laminar"]
+    for done in ("d1", "d2"):
+        assert interrupted_after(out / done, command) == 130
         assert capsys.readouterr().err.splitlines()[-1] == "inerter: interrupted"
-        assert not (tmp_path / "out" / "table.csv").exists()
-    assert codes == [130, 130]  # the third run does the third campaign
-    monkeypatch.undo()
+        assert not (out / "table.csv").exists()
+        assert not (out / "d3").exists()
     assert main(command) == 1
     ours, theirs = content(tmp_path / "out"), content(whole)
     assert ours.pop("report.html") != b""  # its last line is the command, with the folder
@@ -165,14 +169,13 @@ def test_a_folder_of_something_else_is_refused(fleet, tmp_path, capsys):
     assert [p.name for p in tmp_path.iterdir()] == ["mine.txt"]
 
 
-def test_a_scheduler_that_is_not_there_ends_the_batch_before_any_work(
-    fleet, tmp_path, capsys, monkeypatch
-):
+def test_a_scheduler_that_is_not_there_ends_the_batch_before_any_work(fleet, tmp_path, capsys):
     pytest.importorskip("distributed")
-    monkeypatch.setattr("discover.executor.cluster._PATIENCE", 0.5)
+    dask = pytest.importorskip("dask")
     out = tmp_path / "out"
     command = ["batch", str(fleet), "-o", str(out), "--cluster", "tcp://127.0.0.1:9"]
-    assert main(command) == 2
+    with dask.config.set({"distributed.comm.timeouts.connect": "500ms"}):
+        assert main(command) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("inerter: --cluster tcp://127.0.0.1:9: scheduler must be reachable")
     assert not out.exists()

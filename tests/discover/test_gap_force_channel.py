@@ -36,12 +36,6 @@ def high_pass(omega):
     return 1j * omega * DROOP / (1.0 + 1j * omega * DROOP)
 
 
-def bessel(omega):
-    """Second order, of flat delay: no order that the catalogue has."""
-    s = 1j * omega * RC
-    return 3.0 / (3.0 + 3.0 * s + s**2)
-
-
 def butterworth(omega):
     """Two sections of a fourth order, whose delays add up to RC."""
     damping = np.sin(np.pi / 8.0), np.sin(3.0 * np.pi / 8.0)
@@ -80,10 +74,9 @@ def test_a_cell_whose_gain_goes_with_load_is_the_sensor_s(bend):
     "response",
     [
         lambda omega: 1.0 / (1.0 + 1j * omega * RC),
-        pytest.param(bessel, marks=FEW_SHAPES),
         pytest.param(butterworth, marks=FEW_SHAPES),
     ],
-    ids=["resistor and capacitor", "Bessel", "Butterworth"],
+    ids=["resistor and capacitor", "Butterworth"],
 )  # fmt: skip
 def test_a_low_pass_in_the_force_channel_is_a_delay(response):
     found = close_gap(campaign(passed_by(response), noise=3e-3), BASELINE)
@@ -112,9 +105,8 @@ def logged(read, noise=3e-3):
 
 
 @FEW_SHAPES
-@pytest.mark.parametrize("order", [1, 2])
-def test_a_force_that_was_filtered_after_it_was_sampled_is_a_delay(order):
-    top, bottom = butter(order, 25.0, fs=RATE)
+def test_a_force_that_was_filtered_after_it_was_sampled_is_a_delay():
+    top, bottom = butter(1, 25.0, fs=RATE)
     late = float(group_delay((top, bottom), w=[1e-4])[1][0]) / RATE
     found = close_gap(logged(lambda force: lfilter(top, bottom, force)), BASELINE)
     first = found.rounds[0]

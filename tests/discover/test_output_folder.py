@@ -15,6 +15,7 @@ from discover.cli import main
 from discover.report import folder as folders
 from discover.report.folder import MANIFEST, check_replaceable, write_folder
 from discover.report.lock import folder_lock
+from discover.report.swap import rename_twice
 from models.checks import InputError
 
 ROOT = Path(__file__).parents[2]
@@ -126,15 +127,26 @@ class _Interrupting(dict):
         raise KeyboardInterrupt
 
 
-@pytest.mark.parametrize("exchange", [True, False])
-def test_without_the_system_call_it_works_too(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, exchange: bool
-) -> None:
-    if not exchange:
-        monkeypatch.setattr("discover.report.swap._renameat2", lambda: None)
+def test_a_result_takes_the_place_of_the_one_before(tmp_path: Path) -> None:
     for text in ("1", "2", "3"):
         write_folder(tmp_path / "out", {"a": text})
     assert content(tmp_path / "out") == {"a": "3"}
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_two_renames_do_it_where_there_is_no_system_call(tmp_path: Path) -> None:
+    write_folder(tmp_path / "out", {"a": "earlier"})
+    write_folder(tmp_path / "part", {"b": "later"})
+    rename_twice(tmp_path / "part", tmp_path / "out")
+    assert content(tmp_path / "out") == {"b": "later"}
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_the_earlier_result_stays_where_the_new_one_can_t_take_its_place(tmp_path: Path) -> None:
+    write_folder(tmp_path / "out", {"a": "earlier"})
+    with pytest.raises(FileNotFoundError):
+        rename_twice(tmp_path / "gone", tmp_path / "out")
+    assert content(tmp_path / "out") == {"a": "earlier"}
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
 
 

@@ -55,6 +55,7 @@ def emps():
     return run_study(read_campaign(FOLDER / "emps"))
 
 
+@pytest.mark.sweep
 @needs_data
 def test_emps_searched_freely_differs_by_direction_and_has_no_fractional_term(emps):
     (band,) = emps.bands
@@ -64,6 +65,7 @@ def test_emps_searched_freely_differs_by_direction_and_has_no_fractional_term(em
     assert {"asymmetric-damping", "force-offset"} & set(found)
 
 
+@pytest.mark.sweep
 @needs_data
 @pytest.mark.xfail(strict=True, reason="asymmetry of another power shifts the damping to 244 N s/m")
 def test_emps_searched_freely_gives_its_published_values(emps):
@@ -87,6 +89,7 @@ def test_a_real_inerter_has_its_inertance_friction_with_memory_and_no_spring():
     assert study.held_out_relative_error_percent < 7.0
 
 
+@pytest.mark.sweep
 @needs_data
 def test_silverbox_is_a_duffing_oscillator():
     study = run_study(read_campaign(FOLDER / "silverbox"))

@@ -1,7 +1,7 @@
 import math
 import threading
 
-from models.compiled import _Compiled, compiled
+from models.compiled import compiled
 
 
 @compiled()
@@ -23,15 +23,13 @@ def test_the_options_reach_the_compiler():
     assert math.isinf(_outer(1.0))  # Python would raise
 
 
-def test_nothing_is_compiled_before_the_first_call_and_once_after():
+def test_threads_that_call_first_share_one_compilation():
     calls = []
 
     @compiled()
     def tripled(value):
         return 3.0 * value
 
-    assert isinstance(tripled, _Compiled)
-    assert tripled._dispatcher is None
     threads = [threading.Thread(target=lambda: calls.append(tripled.dispatcher())) for _ in "abcd"]
     for thread in threads:
         thread.start()

@@ -1,8 +1,8 @@
 """A small part of the blind study, held to its bars less the error of a count."""
 
 import pytest
-from scipy.stats import binom
 
+from tests.calibration.counting import holds
 from tests.calibration.gap.case import SETS, clean_cases, pair_cases, single_cases
 from tests.calibration.gap.study import IMPOSSIBLE, outcomes
 from tests.calibration.gap.table import TIMES_NOISE, bars
@@ -11,11 +11,6 @@ pytestmark = pytest.mark.sweep
 DEVICE = 10_000  # apart from those of the kept table, as the campaigns below
 CLEAN, PAIRS = range(DEVICE + 1000, DEVICE + 1006), range(DEVICE + 3000, DEVICE + 3003)
 SIZES = (0.2, 0.1, 0.05)
-
-
-def holds(hits, bar):
-    """Tell whether as many are right as at the bar in 19 of 20 such studies or more."""
-    return not hits or binom.cdf(sum(hits), len(hits), bar) >= 0.05
 
 
 def part(kind, place):

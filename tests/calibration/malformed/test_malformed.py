@@ -77,17 +77,17 @@ def test_malformed_models(sound: Path, capsys: pytest.CaptureFixture[str]) -> No
 
 @pytest.mark.slow
 def test_malformed_campaigns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert _campaigns(range(100), tmp_path, capsys).count(2) > 40
+    assert _campaigns(range(30), tmp_path, capsys).count(2) > 12
 
 
 @pytest.mark.sweep
-def test_malformed_models_all(sound: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert _models(range(30, 300), sound, capsys).count(2) > 135
+def test_more_malformed_models(sound: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert _models(range(30, 130), sound, capsys).count(2) > 50
 
 
 @pytest.mark.sweep
-@pytest.mark.parametrize("tenth", range(1, 10))
-def test_malformed_campaigns_all(
-    tmp_path: Path, tenth: int, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("first", [30, 80])
+def test_more_malformed_campaigns(
+    tmp_path: Path, first: int, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert _campaigns(range(100 * tenth, 100 * tenth + 100), tmp_path, capsys).count(2) > 40
+    assert _campaigns(range(first, first + 50), tmp_path, capsys).count(2) > 20

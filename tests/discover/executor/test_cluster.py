@@ -7,6 +7,7 @@ from discover.executor import Lost, executor
 from models.checks import InputError
 from tests.discover.executor import tasks
 
+dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("ignore")  # of Dask's own, when workers die
 
@@ -60,8 +61,8 @@ def test_leaving_early_cancels_what_is_queued(address, tmp_path):
     assert len(list(tmp_path.iterdir())) <= 4  # the two that ran, and at most one more each
 
 
-def test_a_scheduler_that_is_not_there_is_told_in_one_line(monkeypatch):
-    monkeypatch.setattr("discover.executor.cluster._PATIENCE", 0.5)
-    with pytest.raises(InputError, match="scheduler must be reachable") as told:
+def test_a_scheduler_that_is_not_there_is_told_in_one_line():
+    soon = dask.config.set({"distributed.comm.timeouts.connect": "500ms"})
+    with soon, pytest.raises(InputError, match="scheduler must be reachable") as told:
         done("tcp://127.0.0.1:9", tasks.squared, [1])
     assert "\n" not in str(told.value)

@@ -29,7 +29,6 @@ def _short(monkeypatch):
     monkeypatch.setattr(long_record, "FIRST", FIRST)
     for module in (source, parquet_module):
         monkeypatch.setattr(module, "PIECE", 30_000)
-    monkeypatch.setattr(long_text, "_PIECE", 2**20)
 
 
 def table(size=SIZE, *, sine=True):
