@@ -11,9 +11,8 @@ from discover.data_check.plan import plan_of
 from discover.data_check.result import AddedTest, Conditioning, DataCheck, Inseparable, Pair
 from discover.data_check.separation import expected_pairs, inseparable_pairs
 from discover.data_check.sizes import size_findings
-from discover.data_check.together import Differing, differing_records
 from discover.motion_fit import observe_all
-from discover.record_checks import RecordCheck, check_records
+from discover.record_checks import Differing, RecordCheck, check_records, differing_records
 from discover.records import Campaign, Finding, checked_campaign
 from discover.rows import RecordRows, record_rows
 

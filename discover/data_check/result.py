@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from discover.answer_html import answer_html
-from discover.data_check.together import Differing
 from discover.figure_data import PlanFigureData
 from discover.header import document_header
-from discover.record_checks import RecordCheck
+from discover.record_checks import Differing, RecordCheck
 from discover.records import Finding
 from discover.words import counted, listed, percent, quantity, significant
 

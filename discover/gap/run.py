@@ -21,7 +21,7 @@ from discover.named_model import FROM_GEOMETRY, named_model
 from discover.posterior.grow import Step
 from discover.posterior.model import Number
 from discover.posterior.spread import Spread, spread_of
-from discover.record_checks import data_errors
+from discover.record_checks import data_errors, differing_records
 from discover.records import Campaign, checked_campaign
 from discover.rows import Unexplained, alike_percent, force_rows, noise_percent, unexplained
 from models.checks import InputError, one_of
@@ -120,6 +120,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
             leftover_in_words(baseline.rows, left, final.models),
         )
         shape = "; ".join(t for t in told if t)
+    differing = () if final.assessed.quiet else differing_records(baseline.rows)
     records = tuple(
         RecordGap(
             a.observation.file, a.observation.held_out, a.noise_percent, was.relative_percent,
@@ -152,6 +153,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         leave_one_out=not campaign.held_out,
         findings=(
             *data_errors(campaign),
+            *(d.finding for d in differing),
             *findings_of(baseline, found, rounds, where_in_words(located), noise),
         ),
         given=baseline.whole,

@@ -9,15 +9,18 @@ from discover.record_checks.check import (
     data_errors,
 )
 from discover.record_checks.loop_work import LoopWork, loop_work
+from discover.record_checks.together import Differing, differing_records
 
 __all__ = [
     "Apparent",
     "CampaignCheck",
+    "Differing",
     "LoopWork",
     "RecordCheck",
     "apparent",
     "check_record",
     "check_records",
     "data_errors",
+    "differing_records",
     "loop_work",
 ]

@@ -8,8 +8,9 @@ import numpy as np
 
 from discover.bands.boundaries import Boundary
 from discover.bands.extras import Found
-from discover.record_checks import data_errors
+from discover.record_checks import data_errors, differing_records
 from discover.records import Campaign, Finding
+from discover.rows import record_rows
 from discover.study.options import StudyOptions
 from discover.study.prepare import Prepared, observation_findings
 from discover.study.result import Nuisance, StudyBand
@@ -66,6 +67,9 @@ def study_findings(
                 " are given by frequency.",
             )
         )
+    if not found.banded.quiet:  # no law for all explains all
+        held = [record_rows(o) for o in prepared.observations if o.held_out]
+        result += [d.finding for d in differing_records([*prepared.rows, *held])]
     observed = observation_findings(prepared.observations)
     return (*data_errors(campaign), *result, *campaign.findings, *observed)
 

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from discover.data_check import check_campaign
+from discover.gap import close_gap
 from discover.readers import read_campaign
 from discover.records import Campaign
+from discover.study import run_study
 
 REAL = Path(__file__).resolve().parents[4] / "shared" / "real-data"
 SHIPPED = Path(__file__).resolve().parents[3] / "data"
@@ -99,6 +101,11 @@ def test_repeats_of_one_condition_belong_together_and_more_friction_does_not(
     friction = next(t for t in check.differing[0].terms if t.id == "coulomb-friction")
     assert friction.here == pytest.approx(12.0, rel=0.1)
     assert friction.elsewhere == pytest.approx(5.0, rel=0.1)
+    baseline = "fit:viscous-damping,coulomb-friction"
+    campaign = read_campaign(tmp_path)
+    for answer in (run_study(campaign), close_gap(campaign, baseline, effects=["stiffness"])):
+        named = [f.record for f in answer.findings if "does not belong" in f.text]
+        assert named == ["pressure.csv"]
 
 
 @pytest.mark.parametrize("name", ["segmented", "hidden-effect", "device-12-rig"])
