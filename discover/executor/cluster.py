@@ -32,11 +32,28 @@ class Cluster:
         self, function: Callable[[T], R], items: Sequence[T]
     ) -> Iterator[tuple[int, R | Lost]]:
         """Yield each item's place and result as they are done; see `Executor`."""
+        places = list(range(len(items)))
+        alone = False
+        while places:
+            killed: list[int] = []
+            # One by one, who is killed again has taken its worker down itself.
+            for some in ([p] for p in places) if alone else [places]:
+                for place, result in self._once(function, items, some):
+                    if isinstance(result, Lost) and not alone:
+                        killed.append(place)
+                    else:
+                        yield place, result
+            places, alone = sorted(killed), True
+
+    def _once(
+        self, function: Callable[[T], R], items: Sequence[T], places: Sequence[int]
+    ) -> Iterator[tuple[int, R | Lost]]:
+        """Yield places and results as they are done; lost are all that were on dying workers."""
         from distributed import KilledWorker, as_completed
 
         futures = {
-            self.client.submit(_alone, function, item, pure=False): place
-            for place, item in enumerate(items)
+            self.client.submit(_alone, function, items[place], pure=False): place
+            for place in places
         }
         with self.client.as_current():
             completed = as_completed(list(futures))
