@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from discover.shape_words import shape
@@ -105,7 +105,7 @@ def structure_name(band: Mapping[str, Any]) -> str:
     if name == OTHER and not band["terms"]:
         return "none of the structures"
     if name == OTHER:
-        return f"other ({listed(short_name(str(t['id'])) for t in band['terms'])})"
+        return f"other ({listed(_names(band['terms']))})"
     orders = [t["order"] for t in band["terms"] if t.get("order") is not None]
     return f"{name} of order {listed(significant(o, 3) for o in orders)}" if orders else name
 
@@ -115,15 +115,16 @@ def _besides(band: Mapping[str, Any]) -> str:
 
     An effect whose size may as well be zero is not stated.
     """
-    names = [
-        short_name(str(e["id"]))
-        for e in band.get("extras", ())
-        if not zero_possible(e["interval"])
-    ]
+    names = _names(e for e in band.get("extras", ()) if not zero_possible(e["interval"]))
     friction = band.get("friction") or {}
     if "presliding_displacement" in friction:
         names.insert(0, "presliding")
     return f", with {listed(names)}" if names else ""
+
+
+def _names(entries: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Return the short names of terms, each once."""
+    return list(dict.fromkeys(short_name(str(e["id"])) for e in entries))
 
 
 def _dean_short(document: Mapping[str, Any]) -> str:
@@ -166,22 +167,26 @@ def _same(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
 
 def extras_line(document: Mapping[str, Any]) -> str:
     """Say what stands beside the structures, with numbers and how surely; "" for nothing."""
-    texts = [_extra(e) for e in extras(document)]
-    return f"Beside it: {'; '.join(texts)}." if texts else ""
+    groups: dict[str, list[Mapping[str, Any]]] = {}
+    for extra in extras(document):
+        groups.setdefault(str(extra["id"]), []).append(extra)
+    return f"Beside it: {'; '.join(_extra(g) for g in groups.values())}." if groups else ""
 
 
-def _extra(extra: Mapping[str, Any]) -> str:
-    size = quantity(extra["coefficient"], extra["unit"], extra["interval"])
-    text = f"{short_name(str(extra['id']))} {size}"
-    if zero_possible(extra["interval"]):
+def _extra(group: Sequence[Mapping[str, Any]]) -> str:
+    """Say an effect, of which there may be several, as one of each record."""
+    sizes = []
+    for extra in group:
+        size = quantity(extra["coefficient"], extra["unit"], extra["interval"])
+        told = shape({key: value for key, value in extra.items() if not key.endswith("_interval")})
+        sizes.append(f"{size}, {told}" if told else size)
+    text = f"{short_name(str(group[0]['id']))} {'; '.join(sizes)}"
+    if all(zero_possible(e["interval"]) for e in group):
         text = f"possibly {text}: its size is not told from zero"
-    told = shape({key: value for key, value in extra.items() if not key.endswith("_interval")})
-    if told:
-        text += f", {told}"
-    text += f", {probability(extra['probability'])}"
+    text += f", {probability(group[0]['probability'])}"
     others = [
         f"{short_name(str(a['effect']))} ({probability(a['probability'])})"
-        for a in extra.get("alternatives", ())
+        for a in group[0].get("alternatives", ())
     ]
     return f"{text}, or {listed(others, last='or')}" if others else text
 
