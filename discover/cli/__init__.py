@@ -37,7 +37,9 @@ def program() -> int:
             code = main()
         signals.end()
         return code
-    except KeyboardInterrupt:
+    except BaseException as error:
+        if not (isinstance(error, KeyboardInterrupt) or signals.interrupted()):
+            raise
         signals.end()
         exec("")  # as in `discover.cli.app.main`
         print("inerter: interrupted", file=sys.stderr)

@@ -22,7 +22,7 @@ from discover.cli.init import init
 from discover.cli.invocation import Invocation
 from discover.cli.reproduce import reproduce
 from discover.cli.results import one_run
-from discover.cli.signals import leaving
+from discover.cli.signals import interrupted, leaving
 from discover.cli.simulate import simulate
 from discover.cli.synth import synth
 from models.checks import InputError, InputErrors, printable
@@ -85,37 +85,46 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if result == INTERRUPTED:  # newer typer turns the interrupt into this code by itself
             raise KeyboardInterrupt
         sys.stdout.flush()
-    except InputErrors as error:
-        for line in error.lines:
-            _complain(line, BAD_INPUT)
-        return BAD_INPUT
-    except InputError as error:
-        return _complain(str(error), BAD_INPUT)
     except (KeyboardInterrupt, typer.Abort):
-        leaving()
-        # An interrupt of code in a string, as imports run it, would have Python leave by the
-        # signal whatever is returned here, until other code in a string has run.
-        exec("")
-        return _complain("interrupted", INTERRUPTED)
+        return _interrupted()
     except BrokenPipeError:
         # The reader has gone; nothing more can be said to it, at exit either.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    except OSError as error:
+    except Exception as error:
+        return _interrupted() if interrupted() else _failed(error)
+    return result if isinstance(result, int) else 0
+
+
+def _interrupted() -> int:
+    """Say that the run was interrupted; return its exit code."""
+    leaving()
+    # An interrupt of code in a string, as imports run it, would have Python leave by the
+    # signal whatever is returned here, until other code in a string has run.
+    exec("")
+    return _complain("interrupted", INTERRUPTED)
+
+
+def _failed(error: Exception) -> int:
+    """Say what is wrong with the input, or that the program has a fault; return the exit code."""
+    if isinstance(error, InputErrors):
+        for line in error.lines:
+            _complain(line, BAD_INPUT)
+        return BAD_INPUT
+    if isinstance(error, InputError):
+        return _complain(str(error), BAD_INPUT)
+    if isinstance(error, OSError):
         name = f"{error.filename}: " if error.filename else ""
         return _complain(f"{name}{error.strerror or error}", BAD_INPUT)
-    except Exception as error:
-        usage = getattr(error, "format_message", None)
-        if usage is not None:  # typer's own complaints about options
-            return _complain(str(usage()), BAD_INPUT)
-        if os.environ.get("INERTER_DEBUG"):
-            traceback.print_exc()
-        return _complain(
-            f"a fault in this program: {type(error).__name__}: {error};"
-            " INERTER_DEBUG=1 shows where",
-            INTERNAL_ERROR,
-        )
-    return result if isinstance(result, int) else 0
+    usage = getattr(error, "format_message", None)
+    if usage is not None:  # typer's own complaints about options
+        return _complain(str(usage()), BAD_INPUT)
+    if os.environ.get("INERTER_DEBUG"):
+        traceback.print_exc()
+    return _complain(
+        f"a fault in this program: {type(error).__name__}: {error}; INERTER_DEBUG=1 shows where",
+        INTERNAL_ERROR,
+    )
 
 
 def _run(given: Sequence[str]) -> object:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _NUMBERS = (signal.SIGINT, signal.SIGTERM)
 _PAUSE = 0.01  # s
-_state = {"leaving": False}
+_state = {"leaving": False, "interrupted": False}
 
 
 def leaving() -> None:
@@ -24,8 +24,14 @@ def leaving() -> None:
     _state["leaving"] = True
 
 
+def interrupted() -> bool:
+    """Tell whether an interrupt has come: a library may have made another error of it."""
+    return _state["interrupted"]
+
+
 def _interrupt(number: int, frame: object) -> None:
     if not _state["leaving"]:
+        _state["interrupted"] = True
         raise KeyboardInterrupt
 
 
@@ -47,7 +53,7 @@ def begin() -> None:
 
     Signals that whoever started the program had it ignore stay ignored.
     """
-    _state["leaving"] = False
+    _state.update(leaving=False, interrupted=False)
     sys.unraisablehook = _swallowed
     for number in _NUMBERS:
         if signal.getsignal(number) != signal.SIG_IGN:

@@ -276,6 +276,30 @@ except KeyboardInterrupt:
     assert (done.stdout, done.stderr) == ("interrupted\n", "")
 
 
+def test_an_interrupt_of_which_a_library_makes_an_error_is_one() -> None:
+    program = """
+import signal, sys
+from discover import cli
+
+def loading(arguments=None):
+    try:
+        signal.raise_signal(signal.SIGINT)
+    except KeyboardInterrupt:
+        raise ImportError("initialization failed")
+
+cli.main = loading
+sys.exit(cli.program())
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.stderr, done.returncode) == ("inerter: interrupted\n", 130)
+
+
 @pytest.mark.parametrize("name", ["models.py", "models/__init__.py"])
 def test_a_models_of_the_users_own_is_named_and_not_run(tmp_path: Path, name: str) -> None:
     mine = tmp_path / name
