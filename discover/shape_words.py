@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -74,7 +75,6 @@ def shape(term: Mapping[str, Any]) -> str:
     return ", ".join(parts)
 
 
-
 def _told_ends(
     parameter: Parameter, ends: Sequence[float | None] | None
 ) -> tuple[float | None, float | None] | None:
@@ -85,11 +85,10 @@ def _told_ends(
     if not ends:
         return None
     low, high = ends
-    least = parameter.lower if not parameter.scaled_by else min(0.0, parameter.lower)
-    most = None if parameter.scaled_by else parameter.upper
-    bounded = not parameter.scaled_by or parameter.lower >= 0.0
-    if low is not None and bounded and low <= least:
-        low = None
-    if high is not None and most is not None and high >= most:
-        high = None
-    return low, high
+    least, most = parameter.lower, parameter.upper
+    if parameter.scaled_by:
+        least, most = 0.0 if least >= 0.0 else -math.inf, math.inf
+    return (
+        None if low is None or low <= least else low,
+        None if high is None or high >= most else high,
+    )

@@ -230,11 +230,11 @@ def _joined(device: Device, way: Found, step: Step) -> Found:
     best = step.best
     if best.assessed is None:
         raise ValueError("what joins is fitted")
-    terms = best.assessed.model.terms[-best.count :]
+    terms = best.assessed.model.terms
     new = Joined(
-        tuple(p.fitted for p in terms), best.value - best.assessed.value, step
+        tuple(terms[i].fitted for i in best.places), best.value - best.assessed.value, step
     )
-    fitted = {t.fitted.id: t.fitted for t in best.assessed.model.terms}
+    fitted = {t.fitted.id: t.fitted for t in terms}
     old = [
         replace(j, terms=tuple(fitted.get(t.id, t) for t in j.terms)) if len(j.terms) == 1 else j
         for j in way.joined

@@ -32,18 +32,14 @@ class Cluster:
         self, function: Callable[[T], R], items: Sequence[T]
     ) -> Iterator[tuple[int, R | Lost]]:
         """Yield each item's place and result as they are done; see `Executor`."""
-        places = list(range(len(items)))
-        alone = False
-        while places:
-            killed: list[int] = []
-            # One by one, who is killed again has taken its worker down itself.
-            for some in ([p] for p in places) if alone else [places]:
-                for place, result in self._once(function, items, some):
-                    if isinstance(result, Lost) and not alone:
-                        killed.append(place)
-                    else:
-                        yield place, result
-            places, alone = sorted(killed), True
+        killed = []
+        for place, result in self._once(function, items, range(len(items))):
+            if isinstance(result, Lost):
+                killed.append(place)
+            else:
+                yield place, result
+        for place in sorted(killed):  # who is killed again, alone, has taken its worker down itself
+            yield from self._once(function, items, [place])
 
     def _once(
         self, function: Callable[[T], R], items: Sequence[T], places: Sequence[int]
@@ -67,6 +63,9 @@ class Cluster:
                     raise error
                 elif future.status == "finished":
                     yield place, future.result()
+                elif future.status in ("lost", "pending"):  # the result died with its worker
+                    completed.add(future)
+                    continue
                 else:
                     raise _gone(self.address)
                 del futures[future]  # the cluster forgets it

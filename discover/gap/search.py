@@ -186,10 +186,10 @@ def _accepted(baseline: Baseline, here: Stage, step: Step) -> tuple[Step, tuple[
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
             break
-        was, now = here.unseen_gap, stage(baseline, candidate.assessed).unseen_gap
-        less = candidate.left is None or alone is None or is_less(candidate.left, alone)
-        if less and (was is None or now is None or now < was):
-            break
+        if candidate.left is None or alone is None or is_less(candidate.left, alone):
+            was, now = here.unseen_gap, stage(baseline, candidate.assessed).unseen_gap
+            if was is None or now is None or now < was:
+                break
         refused.append(candidate.id)
     return step.without(refused), tuple(refused)
 

@@ -18,7 +18,6 @@ from scipy.fft import prev_fast_len
 from discover.motion_fit.noise_spectrum import NoiseSpectrum, smooth_spectrum
 from discover.motion_fit.observation import Lines
 from models.checks import Array
-from models.fractional.window import hann_window
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state
 
@@ -71,9 +70,9 @@ def band_noise(
     if size > _LONG:  # a few samples less make many transforms several times as fast
         inner = slice(inner.start, inner.start + prev_fast_len(size, real=True))
     force = force[inner]
-    taper = hann_window(force.size + 2)[1:-1]
+    taper = np.hanning(force.size + 2)[1:-1]
     scale = np.sqrt(2.0 * step / np.sum(taper**2))
-    taper = taper * scale
+    taper *= scale
 
     def spectrum(column: Array) -> Lines:
         return np.asarray(np.fft.rfft((column - column.mean()) * taper)[1:])

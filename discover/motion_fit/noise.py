@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from models.checks import Array
-from models.fractional.window import hann_window
 
 _GAPS = 3.0  # between harmonics, to either side of a line
 _OCTAVE = 0.3  # of a line's frequency, to either side of it
@@ -28,7 +27,7 @@ def power_density(residual: Array, step: float) -> tuple[Array, Array]:
     frequencies, density : ndarray, shape (N // 2 + 1,)
         Density in squared units of the signal per Hz.
     """
-    taper = hann_window(residual.size + 2)[1:-1]
+    taper = np.hanning(residual.size + 2)[1:-1]
     spectrum = np.abs(np.fft.rfft(residual * taper)) ** 2
     frequencies = np.asarray(np.fft.rfftfreq(residual.size, step), dtype=np.float64)
     return frequencies, 2.0 * step * spectrum / (taper @ taper)

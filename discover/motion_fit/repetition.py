@@ -18,7 +18,6 @@ from discover.motion_fit.noise import power_density
 from discover.sine_fit import harmonic_design, moments
 from models.checks import Array
 from models.compiled import compiled
-from models.fractional.window import hann_window
 
 FEWEST_CYCLES = 2.5
 _ENOUGH_CYCLES = 6.0
@@ -103,7 +102,7 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     frequencies, density = power_density(whole, step)
     share = np.zeros(whole.size)
     share[at] = kept
-    taper = hann_window(whole.size + 2)[1:-1] ** 2
+    taper = np.hanning(whole.size + 2)[1:-1] ** 2
     width = float(frequencies[1])
     gain = _response(same, time, np.flatnonzero(kept), width, frequencies.size)
     if cycles < _MANY_CYCLES:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.special import logsumexp
@@ -70,7 +71,7 @@ class Step:
         """Return the step without some candidates, refused as they do not predict."""
         return _ordered([c for c in self.candidates if c.id not in ids], self.seed)
 
-    @property
+    @cached_property
     def probabilities(self) -> dict[str, float]:
         """Of every id, and of "" for the model as it is."""
         return _probabilities(self.candidates, self.seed)

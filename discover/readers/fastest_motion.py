@@ -6,7 +6,6 @@ import numpy as np
 from scipy.fft import next_fast_len, rfft
 
 from models.checks import Array
-from models.fractional.window import hann_window
 
 SHARE = 0.999
 """Of the displacement's variance, that lies at or below the fastest motion."""
@@ -40,6 +39,6 @@ def fastest_motion(time: Array, displacement: Array) -> float:
     x = x - x.mean()
     x = x - ramp * (ramp @ x) / (ramp @ ramp)
     padded = next_fast_len(x.size, real=True)
-    power = np.cumsum(np.abs(rfft(x * hann_window(x.size), padded)) ** 2)
+    power = np.cumsum(np.abs(rfft(x * np.hanning(x.size), padded)) ** 2)
     bins = max(int(np.searchsorted(power, SHARE * power[-1])), 1)
     return bins * (grid.size - 1) / (duration * padded)

@@ -42,7 +42,9 @@ _OFFSET = FittedTerm("force-offset", 1.0)
 _LEVEL = 0.01  # probability of a false word on a campaign whose records belong together
 _ALIKE = 0.3  # of the logarithm of frequency and of amplitude: two motions are alike
 _FEWEST = 4  # records, of which one can be told from all others
-_REPEATS = 0.03  # of the force, standard deviation: no device repeats a test better (wear, warmth)
+_REPEATS = 0.03
+"""Of the force, standard deviation: no device repeats a test better (wear, warmth). A judgement; of
+14 campaigns, 11 of them measured, the same records are named at 0, 0.01 and 0.03."""
 _SEEN = 1e-6  # of the greatest singular value: directions that records hardly show are left out
 
 

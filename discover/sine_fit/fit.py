@@ -10,7 +10,6 @@ from discover.sine_fit.design import harmonic_design
 from discover.sine_fit.harmonic_sums import Moments, moments
 from discover.sine_fit.solution import Basis, SineFit, Solution
 from models.checks import Array, InputError, finite_array, number
-from models.fractional.window import hann_window
 
 FEW_CYCLES = 12.0  # below this many cycles a spectrum's peak is off by its own mirror image
 
@@ -134,7 +133,7 @@ def _start(tau: Array, z: Array, duration: float) -> float:
     )
     slope = (grid @ even) / (grid @ grid)
     padded = next_fast_len(4 * size, real=True)
-    tapered = (even - even.mean() - slope * grid) * hann_window(size)
+    tapered = (even - even.mean() - slope * grid) * np.hanning(size)
     bin_width = (size - 1) / duration / padded
     start = strongest_line(np.abs(rfft(tapered, padded)) ** 2, bin_width, duration)
     return start if start * duration >= FEW_CYCLES else _scan(tau, z, start, duration)

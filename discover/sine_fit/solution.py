@@ -12,7 +12,6 @@ from scipy.linalg import cho_factor, cho_solve
 from discover.sine_fit.design import ComplexArray, harmonic_design
 from discover.sine_fit.harmonic_sums import Columns, Harmonics, Moments, columns_of
 from models.checks import Array
-from models.fractional.window import hann_window
 
 _NEAREST = 24  # bins whose median is the noise beside a harmonic
 _NEGLIGIBLE = 1e-12  # of the fundamental: rounding, not a harmonic
@@ -233,7 +232,7 @@ class Solution:
         freedom = max(n - self.size, 1)
         self.total = float(self.residual @ self.residual) / freedom
         duration = float(self.tau[-1] - self.tau[0])
-        window = hann_window(n)
+        window = np.hanning(n)
         density = np.abs(np.fft.rfft(self.residual * window)) ** 2 / float(window @ window)
         bins = np.arange(density.size) * (n - 1) / n  # in units of 1/duration
         cycles = self.frequency * duration
