@@ -127,7 +127,8 @@ def fit_terms(assessor: Assessor, ids: Sequence[str]) -> Assessed:
         model = Composite.of(ForceModel(terms))
         local = local_of(space, assessor.evaluator, model)
         sizes = space.start.sizes(space.own_unit)
-        value = judged(space, local, sizes, assessor.curve_of(model)).value
+        beside = local.beside(space, assessor.curve_of(model))
+        value = judged(local, beside, sizes).value
         if value > most:
             best, most = model, value
     if best is None:

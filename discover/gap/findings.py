@@ -115,7 +115,7 @@ def _wrong_signs(baseline: Baseline, at: Stage) -> list[Finding]:
     space = at.assessed.space
     local, place = at.assessed.local, at.assessed.place
     curve = baseline.assessor.curve_of(local.model)
-    solved = judged(space, local, place.sizes(space.own_unit), curve).solved
+    solved = judged(local, local.beside(space, curve), place.sizes(space.own_unit)).solved
     deviation = np.sqrt(np.maximum(np.diagonal(solved.covariance), 0.0))
     result = []
     for i, n in enumerate(local.numbers):

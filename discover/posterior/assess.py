@@ -11,6 +11,7 @@ from scipy.special import logsumexp
 
 from discover.posterior.climb import Place, climb
 from discover.posterior.local import Judged, Local, fitted, judged
+from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Evaluator
 from discover.posterior.setup import behind
 from discover.posterior.space import Part, Space, departures
@@ -91,8 +92,6 @@ class Assessor:
         """
         evaluator = self.coarse if coarse else self.evaluator
         place, space = start, self.space
-        local = Local(model, (), *[np.zeros(0)] * 4)
-        visited: dict[Place, float] = {}
         for _ in range(_ROUNDS):
             sizes = place.sizes(space.own_unit)
             numbers = None if refit else ()
@@ -101,14 +100,15 @@ class Assessor:
                 space, evaluator, model, sizes, self.curve_of(model),
                 numbers=numbers, iterations=iterations,
             )
-            visited = {}
-            found = climb(partial(self._at, space, local, visited), place)
+            visited: dict[Place, float] = {}
+            beside = local.beside(space, self.curve_of(model))
+            found = climb(partial(_at, space, local, beside, visited), place)
             model = local.model
             stays, place = found == place and space is self.space, found
             if stays:
                 break
-        self._at(space, local, visited, space.quiet)
-        best = judged(space, local, place.sizes(space.own_unit), self.curve_of(model))
+        _at(space, local, beside, visited, space.quiet)
+        best = judged(local, beside, place.sizes(space.own_unit))
         if space is not self.space:
             space.forget()
         return Assessed(
@@ -139,24 +139,16 @@ class Assessor:
         visited: dict[Place, float] = {}
         place = assessed.place
         for _ in range(_ROUNDS):
-            visited = {}
+            visited, beside = {}, local.beside(space, curve)
             for flat in assessed.place.unaided:
-                self._at(space, local, visited, flat)
+                _at(space, local, beside, visited, flat)
             before, place = place, max(visited, key=lambda p: visited[p])
             if place == before:
                 break
             sizes = place.sizes(space.own_unit)
             local = fitted(space, self.evaluator, local.model, sizes, curve)
-        best = judged(space, local, place.sizes(space.own_unit), curve)
+        best = judged(local, local.beside(space, curve), place.sizes(space.own_unit))
         return Assessed(local, place, assessed.value, best, visited, assessed.quiet, space)
-
-    def _at(
-        self, space: Space, local: Local, visited: dict[Place, float], place: Place
-    ) -> float:
-        if place not in visited:
-            sizes = place.sizes(space.own_unit)
-            visited[place] = judged(space, local, sizes, self.curve_of(local.model)).value
-        return visited[place]
 
     def curve_of(self, model: Composite) -> Part | None:
         """Return the departures of friction's curve where a model has that friction."""
@@ -164,6 +156,14 @@ class Assessor:
             return None
         name = self.curve.id
         return self.curve if any(t.fitted.id == name for t in model.terms) else None
+
+
+def _at(
+    space: Space, local: Local, beside: Comparison, visited: dict[Place, float], place: Place
+) -> float:
+    if place not in visited:
+        visited[place] = judged(local, beside, place.sizes(space.own_unit)).value
+    return visited[place]
 
 
 def is_quiet(visited: Mapping[Place, float]) -> bool:

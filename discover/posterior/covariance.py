@@ -15,7 +15,7 @@ from plain products of each unit by Woodbury's identity, so that rows are read o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -88,6 +88,60 @@ class Products:
 
 
 @dataclass(frozen=True)
+class Further:
+    """Columns that are not among a space's, compared with these."""
+
+    columns: Array
+    """(U, T, R)."""
+    _known: dict[tuple[tuple[float, ...], bytes], tuple[Array, Array]] = field(
+        default_factory=dict, repr=False
+    )
+
+    def plain(self, products: Products, columns: Indices) -> tuple[Array, Array]:
+        """Return plain products, made once for each size of the independent error.
+
+        With the remainder, own friction and some of the space's columns (U, F + N + K, T), and
+        with each other, summed over units (T, T).
+        """
+        key = products.loud, columns.tobytes()
+        if key not in self._known:
+            nuisance = products.sheet.remainder.shape[1] + products.own.shape[1]
+            new = (self.columns / products.scale[:, None]).transpose(0, 2, 1)
+            parts = [products.base[:, :nuisance] @ new]
+            if columns.size:
+                first = int(columns.min())
+                run = products.base[:, nuisance + first : nuisance + int(columns.max()) + 1]
+                parts.append((run @ new)[:, columns - first])
+            flat = new.reshape(-1, new.shape[2])
+            self._known[key] = np.concatenate(parts, axis=1), flat.T @ flat
+        return self._known[key]
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Columns of the space beside which others are compared."""
+
+    columns: Indices
+    """(K,) their places."""
+    spread: Array
+    """(K,) standard deviations of their coefficients beforehand, at scale one."""
+    shared: Array
+    """(Q F, K) what the remainder that units share takes of them."""
+    gram: Array
+    """(K, K) their products."""
+
+    @cached_property
+    def axes(self) -> tuple[Array, Array]:
+        """How well (K,) directions of their coefficients are told, and these directions (K, K).
+
+        At a scale s the coefficients' covariance is s^2 / (1 + s^2 how well) along each: the
+        directions are the same at all scales.
+        """
+        strength, vectors = np.linalg.eigh(self.spread[:, None] * self.gram * self.spread)
+        return np.maximum(strength, 0.0), self.spread[:, None] * vectors
+
+
+@dataclass(frozen=True)
 class Given:
     """Products of columns under the inverse covariance of given sizes."""
 
@@ -107,6 +161,7 @@ class Given:
     """(Q F, Q F) lower factor of one and what that adds."""
     log_centre: float
     """Log density of rows at its centre, without constants, nats."""
+    _kept: dict[bytes, Kept] = field(default_factory=dict, repr=False)
 
     @property
     def functions(self) -> int:
@@ -164,27 +219,38 @@ class Given:
         taken = np.linalg.solve(self.inner, self.spread[:, None] * plain)
         return np.asarray(new @ new.transpose(0, 2, 1) - taken.transpose(0, 2, 1) @ taken)
 
-    def beside(self, columns: Indices, more: Array) -> tuple[Array, Array]:
-        """Return products of further columns (U, T, R): with columns (K, T), and (T, T)."""
+    def kept(self, columns: Indices, spread: Array) -> Kept:
+        """Return columns (K,) beside which others are compared, made once at these sizes."""
+        key = columns.tobytes() + spread.tobytes()
+        if key not in self._kept:
+            f = self.functions
+            within = self.left[:, :f, f + columns]
+            gram = self.gram([(columns, None)])
+            self._kept[key] = Kept(columns, spread, self._across(within), gram)
+        return self._kept[key]
+
+    def beside(self, kept: Kept, further: Further) -> tuple[Array, Array]:
+        """Return products of further columns: with those that are kept (K, T), and (T, T)."""
         p, f, nuisance = self.products, self.functions, self.spread.size
-        new = more / p.scale[:, None]
-        kept = np.r_[np.arange(nuisance), nuisance + columns]
-        plain = p.base[:, kept] @ new.transpose(0, 2, 1)
+        plain, among = further.plain(p, kept.columns)
         taken = np.linalg.solve(self.inner, self.spread[:, None] * plain[:, :nuisance])
-        seen = np.r_[np.arange(f), nuisance + np.arange(columns.size)]
-        left = plain[:, seen] - self.taken[:, :, kept[seen]].transpose(0, 2, 1) @ taken
-        each = np.tensordot(self.smooth.T, left[:, :f], (1, 0)).reshape(self.outer.shape[0], -1)
-        shared = solve_triangular(self.outer, each, lower=True, check_finite=False)
-        among = np.tensordot(new, new, ((0, 2), (0, 2)))
-        among = among - np.tensordot(taken, taken, ((0, 1), (0, 1))) - shared.T @ shared
-        across = left[:, f:].sum(axis=0)
-        if columns.size:
-            own = np.tensordot(
-                self.smooth.T, self.left[:, :f, f + columns], (1, 0)
-            ).reshape(self.outer.shape[0], -1)
-            own = solve_triangular(self.outer, own, lower=True, check_finite=False)
-            across = across - own.T @ shared
+        flat = taken.reshape(-1, taken.shape[2])
+        shared = self._across(
+            plain[:, :f] - self.taken[:, :, :f].transpose(0, 2, 1) @ taken
+        )
+        among = among - flat.T @ flat - shared.T @ shared
+        if not kept.columns.size:
+            return np.zeros((0, among.shape[0])), among
+        own = self.taken[:, :, nuisance + kept.columns].reshape(-1, kept.columns.size)
+        across = plain[:, nuisance:].sum(axis=0) - own.T @ flat - kept.shared.T @ shared
         return across, among
+
+    def _across(self, left: Array) -> Array:
+        """Return what the remainder that units share takes of products with it (U, F, T)."""
+        units, functions, count = left.shape
+        each = self.smooth.T @ left.reshape(units, functions * count)
+        each = each.reshape(self.smooth.shape[1] * functions, count)
+        return np.asarray(solve_triangular(self.outer, each, lower=True, check_finite=False))
 
 
 def given(products: Products, sizes: Sizes) -> Given:

@@ -27,7 +27,9 @@ class Solved:
     """(..., K, K)."""
 
 
-def solved(gram: Array, side: Array, spread: Array, sign: Array, log_normal: float) -> Solved:
+def solved(
+    gram: Array, side: Array, spread: Array, sign: Array, log_normal: float | Array
+) -> Solved:
     """Return the posterior of models of K coefficients.
 
     Parameters
@@ -41,7 +43,7 @@ def solved(gram: Array, side: Array, spread: Array, sign: Array, log_normal: flo
     sign : ndarray, shape (..., K)
         1 where a coefficient can't be negative, -1 where not positive, else 0: the prior is
         a normal one cut off at zero.
-    log_normal : float
+    log_normal : float or ndarray, shape (...)
         Log density of the measured force without any column.
     """
     count = gram.shape[-1]
@@ -71,6 +73,8 @@ def _allowed(mean: Array, covariance: Array, sign: Array) -> Array:
     result = np.zeros(mean.shape[:-1])
     for k in range(mean.shape[-1]):
         own = sign[..., k]
+        if not np.any(own):
+            continue
         variance = np.maximum(covariance[..., k, k], 1e-300)
         deviation = np.sqrt(variance)
         z = own * mean[..., k] / deviation

@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 
 from discover.posterior.covariance import Sizes
 from discover.posterior.evidence import Solved, solved
-from discover.posterior.metric import compared
+from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Evaluator, Number
 from discover.posterior.space import Part, Space
 from models.checks import Array
@@ -51,6 +51,11 @@ class Local:
     def target(self, measured: Array) -> Array:
         """Return what the slopes times the numbers shall make (U, R) of a measured force."""
         return np.asarray(measured - self.force + np.einsum("p,upr->ur", self.values, self.slopes))
+
+    def beside(self, space: Space, curve: Part | None) -> Comparison:
+        """Return its slopes, and what they shall make of the measured force, to be compared."""
+        target = self.target(space.sheet.target)[:, None]
+        return Comparison(space, np.concatenate([self.slopes, target], axis=1), curve)
 
 
 @dataclass(frozen=True)
@@ -102,19 +107,16 @@ def shape_bounds(model: Composite, number: Number, scales: Scales) -> tuple[floa
     return min(parameter.lower * size, value), max(parameter.upper * size, value)
 
 
-def judged(space: Space, local: Local, sizes: Sizes, curve: Part | None) -> Judged:
-    """Return a model's evidence at some sizes."""
-    target = local.target(space.sheet.target)[:, None]
-    columns = np.concatenate([local.slopes, target], axis=1)
-    values, found = [], []
-    for at in compared(space, sizes, columns, curve):
-        normal = at.log_normal - 0.5 * float(at.gram[-1, -1])
-        one = solved(at.gram[:-1, :-1], at.gram[:-1, -1], local.spread, local.sign, normal)
-        values.append(float(one.log_evidence))
-        found.append((at.scale, one, at.gram[:-1, :-1], at.gram[:-1, -1]))
-    best = int(np.argmax(values))
-    value = float(logsumexp(values)) - float(np.log(len(values)))
-    return Judged(value, *found[best])
+def judged(local: Local, beside: Comparison, sizes: Sizes) -> Judged:
+    """Return a model's evidence at some sizes; `beside` is its `Local.beside`."""
+    at = beside.at(sizes)
+    gram, side = at.gram[:, :-1, :-1], at.gram[:, :-1, -1]
+    normal = at.log_normal - 0.5 * at.gram[:, -1, -1]
+    found = solved(gram, side, local.spread, local.sign, normal)
+    k = int(np.argmax(found.log_evidence))
+    value = float(logsumexp(found.log_evidence)) - float(np.log(at.scales.size))
+    one = Solved(found.log_evidence[k], found.mean[k], found.covariance[k])
+    return Judged(value, float(at.scales[k]), one, gram[k], side[k])
 
 
 def fitted(
@@ -137,7 +139,7 @@ def fitted(
         return here
     best = _density(space, here, sizes, curve)
     for _ in range(iterations):
-        answer = judged(space, here, sizes, curve)
+        answer = judged(here, here.beside(space, curve), sizes)
         wanted = _within_bounds(here, answer, space.scales)
         share, there, value = 1.0, here, best
         for _ in range(_HALVINGS):
@@ -212,7 +214,5 @@ def _fit(space: Space, force: Array, sizes: Sizes, curve: Part | None) -> float:
     left = (space.sheet.target - force)[:, None]
     if not np.all(np.isfinite(left)):
         return -np.inf
-    values = [
-        at.log_normal - 0.5 * float(at.gram[0, 0]) for at in compared(space, sizes, left, curve)
-    ]
-    return float(logsumexp(values))
+    at = Comparison(space, left, curve).at(sizes)
+    return float(logsumexp(at.log_normal - 0.5 * at.gram[:, 0, 0]))

@@ -2,55 +2,59 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from discover.posterior.covariance import Sizes
+from discover.posterior.covariance import Further, Sizes
 from discover.posterior.space import Part, Space
 from models.checks import Array
 
 
 @dataclass(frozen=True)
 class Compared:
-    """Products of columns, at one scale of the curve."""
+    """Products of columns, at S scales of the curve."""
 
-    scale: float
-    """Of the curve; 0 without one."""
+    scales: Array
+    """(S,) of the curve; one of 0 without a curve."""
     gram: Array
-    """(T, T)."""
-    log_normal: float
-    """Log density of rows at its centre, without constants, nats."""
+    """(S, T, T)."""
+    log_normal: Array
+    """(S,) log density of rows at its centre, without constants, nats."""
 
 
-def compared(
-    space: Space, sizes: Sizes, columns: Array, curve: Part | None
-) -> Iterator[Compared]:
-    """Yield products of columns (U, T, R), at every scale of a curve that is marginalised.
+@dataclass(frozen=True)
+class Comparison:
+    """Columns to compare at many sizes, what does not depend on these made once."""
 
-    Parameters
-    ----------
-    space : Space
-        Of the records, with the curve's columns.
-    sizes : Sizes
-        Of what no term explains.
-    columns : ndarray, shape (U, T, R)
-        To compare.
-    curve : Part, optional
-        A term with a curve of its own.
-    """
-    here = space.given(sizes)
-    if curve is None:
-        _, among = here.beside(np.zeros(0, dtype=int), columns)
-        yield Compared(0.0, among, here.log_centre)
-        return
-    across, among = here.beside(curve.columns, columns)
-    inner = here.gram([(curve.columns, None)])
-    for scale in curve.scales:
-        factor, half = _factored(inner, across, scale * curve.spread)
-        gram = np.asarray(among - half.T @ half)
-        yield Compared(scale, gram, here.log_centre - float(np.sum(np.log(np.diag(factor)))))
+    space: Space
+    """Of the records, with the curve's columns."""
+    columns: Array
+    """(U, T, R) to compare."""
+    curve: Part | None
+    """A term with a curve of its own, marginalised; None without."""
+    _further: Further = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Set the columns aside."""
+        object.__setattr__(self, "_further", Further(self.columns))
+
+    def at(self, sizes: Sizes) -> Compared:
+        """Return products of the columns, at every scale of the curve."""
+        here = self.space.given(sizes)
+        if self.curve is None:
+            _, among = here.beside(here.kept(np.zeros(0, dtype=int), np.zeros(0)), self._further)
+            return Compared(np.zeros(1), among[None], np.array([here.log_centre]))
+        kept = here.kept(self.curve.columns, self.curve.spread)
+        across, among = here.beside(kept, self._further)
+        scales = np.array(self.curve.scales)
+        strength, axes = kept.axes
+        grown = 1.0 + scales[:, None] ** 2 * strength
+        seen = axes.T @ across
+        share = scales[:, None] ** 2 / grown
+        gram = among - seen.T @ (share[:, :, None] * seen)
+        normal = here.log_centre - 0.5 * np.sum(np.log(grown), axis=1)
+        return Compared(scales, gram, normal)
 
 
 def curve_given(
@@ -60,24 +64,20 @@ def curve_given(
 
     Parameters
     ----------
-    space, sizes, curve
-        As in `compared`.
+    space : Space
+        Of the records, with the curve's columns.
+    sizes : Sizes
+        Of what no term explains.
     left : ndarray, shape (U, R)
         What the rest of a model leaves of the measured force.
+    curve : Part
+        A term with a curve of its own.
     scale : float
         Of the curve.
     """
     here = space.given(sizes)
-    across, _ = here.beside(curve.columns, left[:, None])
-    spread = scale * curve.spread
-    factor, _ = _factored(here.gram([(curve.columns, None)]), across, spread)
-    root = np.linalg.solve(factor, np.diag(spread))
-    covariance = root.T @ root
+    kept = here.kept(curve.columns, curve.spread)
+    across, _ = here.beside(kept, Further(left[:, None]))
+    strength, axes = kept.axes
+    covariance = (axes * (scale**2 / (1.0 + scale**2 * strength))) @ axes.T
     return covariance @ across[:, 0], covariance
-
-
-def _factored(inner: Array, outer: Array, spread: Array) -> tuple[Array, Array]:
-    """Return the factor of one and the curve's products, and the share that it takes of others."""
-    whole = np.eye(spread.size) + spread[:, None] * inner * spread
-    factor = np.linalg.cholesky(whole)
-    return np.asarray(factor, dtype=float), np.linalg.solve(factor, spread[:, None] * outer)

@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.covariance import Sizes
 from discover.posterior.local import fitted
-from discover.posterior.metric import curve_given
+from discover.posterior.metric import Comparison, curve_given
 from discover.posterior.model import Composite
 from discover.posterior.space import Part, Space
 from discover.regression.best_subset import best_subsets
@@ -149,9 +149,8 @@ def _turning(
     space: Space, sizes: Sizes, left: Array, whole: Array, curve: Part
 ) -> tuple[str, float, float, tuple[float, float]]:
     """Return what friction turns over, how surely, and over how much, from each curve alone."""
-    here = space.given(sizes)
     stacked = np.concatenate([whole, left[:, None]], axis=1)
-    _, gram = here.beside(np.zeros(0, dtype=int), stacked)
+    gram = Comparison(space, stacked, None).at(sizes).gram[0]
     power = np.maximum(np.diagonal(gram)[:-1], 1e-300)
     size = space.sheet.scale(whole)
     grown = 1.0 + size**2 * power

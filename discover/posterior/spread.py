@@ -55,10 +55,10 @@ def spread_of(assessor: Assessor, assessed: Assessed, predicting: Composite) -> 
     kept = [i for i in np.argsort(-weights) if weights[i] >= _LEAST] or [int(weights.argmax())]
     share = weights[kept] / weights[kept].sum()
     means, covariances = [], []
-    curve = assessor.curve_of(local.model)
+    beside = local.beside(assessed.space, assessor.curve_of(local.model))
     for i in kept:
         sizes = places[i].sizes(assessed.space.own_unit)
-        found = judged(assessed.space, local, sizes, curve).solved
+        found = judged(local, beside, sizes).solved
         means.append(np.where(shaped, start + found.mean, found.mean))
         covariances.append(found.covariance)
     mean = np.einsum("w,wp->p", share, means)

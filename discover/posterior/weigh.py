@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.special import log_ndtr
@@ -10,12 +12,13 @@ from scipy.special import log_ndtr
 from discover.posterior.covariance import Sizes
 from discover.posterior.evidence import without
 from discover.posterior.local import Local
-from discover.posterior.metric import compared
+from discover.posterior.metric import Compared, Comparison
 from discover.posterior.space import Part, Space
 from models.checks import Array, Indices
 from models.constitutive import FittedTerm
 
 _LOG_2 = float(np.log(2.0))
+_TOGETHER = 64  # columns of trials that are weighed at once
 
 
 @dataclass(frozen=True)
@@ -75,40 +78,67 @@ def gains(
     curve : Part, optional
         Whose departures are marginalised, at the scale that suits the model best.
     """
-    free = local.spread.size
     target = local.target(space.sheet.target)[:, None]
-    columns = np.concatenate([local.slopes, target, trials.columns], axis=1)
-    best, most = None, -np.inf
-    for at in compared(space, sizes, columns, curve):
-        plain = at.gram[: free + 1, : free + 1]
-        left, gained = without(plain, np.arange(free), local.spread)
-        value = at.log_normal - 0.5 * float(plain[-1, -1]) + gained
-        if value > most:
-            best, most = at.gram, value
-    if best is None:
-        return []
-    spread = local.spread
-    inner = np.eye(free) + spread[:, None] * best[:free, :free] * spread
-    half = np.linalg.solve(np.linalg.cholesky(inner), spread[:, None] * best[:free])
-    left = best[free:, free:] - half[:, free:].T @ half[:, free:]
+    model = np.concatenate([local.slopes, target], axis=1)
+    found: list[Gain] = []
+    for some in _in_turn(trials.entries):
+        columns = np.concatenate(
+            [model, trials.columns[:, np.concatenate([e.places for e in some])]], axis=1
+        )
+        at = Comparison(space, columns, curve).at(sizes)
+        left = _beside_model(at, local)
+        found += _gains(left, some, space.sheet.scale(columns[:, model.shape[1] :]))
+    return sorted(found, key=lambda g: -g.value)
+
+
+def _in_turn(entries: Sequence[Trial]) -> Iterator[list[Trial]]:
+    """Yield some trials after the other: trials need no products with each other."""
+    some: list[Trial] = []
+    count = 0
+    for entry in entries:
+        some.append(entry)
+        count += entry.places.size
+        if count >= _TOGETHER:
+            yield some
+            some, count = [], 0
+    if some:
+        yield some
+
+
+def _beside_model(at: Compared, local: Local) -> Array:
+    """Return products of the measured force and trials (1 + T, 1 + T), the model taken out.
+
+    At the scale of the curve that suits the model best.
+    """
+    free = local.spread.size
+    values = []
+    for some, normal in zip(at.gram, at.log_normal, strict=True):
+        plain = some[: free + 1, : free + 1]
+        _, gained = without(plain, np.arange(free), local.spread)
+        values.append(normal - 0.5 * float(plain[-1, -1]) + gained)
+    return without(at.gram[int(np.argmax(values))], np.arange(free), local.spread)[0][free:, free:]
+
+
+def _gains(left: Array, entries: Sequence[Trial], size: Array) -> list[Gain]:
+    """Return what trials gain, from products (1 + T, 1 + T) and sizes (T,) of their columns."""
     side, gram = left[1:, 0], left[1:, 1:]
-    size = space.sheet.scale(trials.columns)
     sign = np.zeros(size.size)
-    for entry in trials.entries:
+    ends = np.cumsum([0, *(e.places.size for e in entries)])
+    own = [np.arange(low, high) for low, high in pairwise(ends)]
+    for entry, at in zip(entries, own, strict=True):
         low, high = entry.terms[0].term.coefficient_bounds(entry.terms[0].shape)
-        sign[entry.places] = float(low >= 0.0) - float(high <= 0.0)
-        size[entry.places] = np.minimum(size[entry.places], max(-low, high))
+        sign[at] = float(low >= 0.0) - float(high <= 0.0)
+        size[at] = np.minimum(size[at], max(-low, high))
     single, mean = _single(np.diagonal(gram), side, size, sign)
     found = []
-    for entry in trials.entries:
-        own = entry.places
+    for entry, at in zip(entries, own, strict=True):
         many: tuple[float, ...]
-        if own.size == 1:
-            one, many = float(single[own[0]]), (float(mean[own[0]]),)
+        if at.size == 1:
+            one, many = float(single[at[0]]), (float(mean[at[0]]),)
         else:
-            one, many = _several(gram[np.ix_(own, own)], side[own], size[own])
+            one, many = _several(gram[np.ix_(at, at)], side[at], size[at])
         found.append(Gain(entry, one + entry.log_prior, many))
-    return sorted(found, key=lambda g: -g.value)
+    return found
 
 
 def _several(gram: Array, side: Array, size: Array) -> tuple[float, tuple[float, ...]]:

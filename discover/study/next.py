@@ -115,7 +115,7 @@ def _rival(
     sizes = banded.place.sizes(assessor.space.own_unit)
     curve = assessor.curve_of(model)
     local = fitted(assessor.space, assessor.evaluator, model, sizes, curve)
-    solved = judged(assessor.space, local, sizes, curve).solved
+    solved = judged(local, local.beside(assessor.space, curve), sizes).solved
     inside = [
         i for i, n in enumerate(local.numbers)
         if _in_band(local.model.terms[n.term].share, banded.shares[band])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from discover.motion_fit import observe
-from discover.posterior.covariance import Sizes
-from discover.posterior.metric import compared, curve_given
+from discover.posterior.covariance import Further, Sizes
+from discover.posterior.metric import Comparison, curve_given
 from discover.posterior.setup import space_of
 from discover.posterior.space import departures, parts_of
 from discover.records import Record
@@ -55,7 +55,7 @@ def test_products_of_columns_that_are_there_in_part(problem, name):
     found = here.gram([(np.r_[at, here.force], None), (at, share)])
     scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
     np.testing.assert_allclose(found / scale, expected / scale, atol=1e-7)
-    across, among = here.beside(at, columns)
+    across, among = here.beside(here.kept(at, np.ones(2)), Further(columns))
     np.testing.assert_allclose(across / scale[:2, :3], expected[:2, :3] / scale[:2, :3], atol=1e-7)
     np.testing.assert_allclose(among / scale[:3, :3], expected[:3, :3] / scale[:3, :3], atol=1e-7)
 
@@ -98,16 +98,16 @@ def test_a_curve_that_is_marginalised_is_a_part_of_the_covariance(problem):
     sizes = SIZES["all"]
     columns = np.concatenate([space.columns[:, at], space.sheet.target[:, None]], axis=1)
     bank = flat(space.columns[:, part.columns])
-    found = list(compared(space, sizes, columns, part))
-    assert [c.scale for c in found] == list(part.scales)
-    for one in (found[0], found[-1]):
-        whole = dense(space, sizes) + bank @ np.diag((one.scale * part.spread) ** 2) @ bank.T
+    found = Comparison(space, columns, part).at(sizes)
+    np.testing.assert_array_equal(found.scales, part.scales)
+    for k in (0, -1):
+        whole = dense(space, sizes) + bank @ np.diag((found.scales[k] * part.spread) ** 2) @ bank.T
         matrix = flat(columns)
         expected = matrix.T @ np.linalg.solve(whole, matrix)
         scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
-        np.testing.assert_allclose(one.gram / scale, expected / scale, atol=1e-6)
+        np.testing.assert_allclose(found.gram[k] / scale, expected / scale, atol=1e-6)
         density = log_density(space.sheet.target.ravel(), whole)
-        assert one.log_normal - 0.5 * one.gram[-1, -1] == pytest.approx(density, rel=1e-6)
+        assert found.log_normal[k] - 0.5 * found.gram[k, -1, -1] == pytest.approx(density, rel=1e-6)
 
 
 def test_the_curve_s_coefficients_are_those_of_a_ridge(problem):
