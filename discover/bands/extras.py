@@ -20,7 +20,7 @@ from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.climb import Place
 from discover.posterior.grow import Step, grown
 from discover.posterior.left_out import is_needed, predicts_better
-from discover.posterior.model import Evaluator
+from discover.posterior.model import Composite, Evaluator
 from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
 from discover.posterior.spread import is_told
@@ -54,32 +54,6 @@ class Joined:
 
 
 @dataclass(frozen=True)
-class Found:
-    """Bands, what holds in each, and what the device has besides."""
-
-    banded: Banded
-    """The most probable division."""
-    fewer: tuple[Banded, ...]
-    """All that were weighed beside it with the same terms joined, by number of bands."""
-    search: BandSearch
-    """That found it."""
-    joined: tuple[Joined, ...]
-    """What the device has besides its structure."""
-    last: Step | None
-    """What might have joined and did not; None where nothing but noise was left."""
-
-    @property
-    def value(self) -> float:
-        """Log evidence with priors, nats."""
-        return self.banded.value + sum(j.log_prior for j in self.joined)
-
-    @property
-    def variants(self) -> tuple[Variant, ...]:
-        """That a band may have."""
-        return self.search.variants
-
-
-@dataclass(frozen=True)
 class Device:
     """What a search for bands and for what a device has besides starts from."""
 
@@ -107,6 +81,47 @@ class Device:
         """What assesses models of its records."""
         space, curve = space_of(self.rows, self.friction)
         return Assessor(space, Evaluator(space.sheet, space.scales), curve, seed=self.seed)
+
+
+@dataclass(frozen=True)
+class Found:
+    """Bands, what holds in each, and what the device has besides."""
+
+    device: Device
+    """That was searched."""
+    banded: Banded
+    """The most probable division."""
+    fewer: tuple[Banded, ...]
+    """All that were weighed beside it with the same terms joined, by number of bands."""
+    search: BandSearch
+    """That found it."""
+    joined: tuple[Joined, ...]
+    """What the device has besides its structure."""
+    last: Step | None
+    """What might have joined and did not; None where nothing but noise was left."""
+
+    @property
+    def value(self) -> float:
+        """Log evidence with priors, nats."""
+        return self.banded.value + sum(j.log_prior for j in self.joined)
+
+    @property
+    def variants(self) -> tuple[Variant, ...]:
+        """That a band may have."""
+        return self.search.variants
+
+    @property
+    def model(self) -> Composite:
+        """Each band's best variant, friction, and what has joined."""
+        shared = [t for j in self.joined for t in j.terms]
+        if self.device.with_friction:
+            shared.append(FittedTerm(self.device.friction.id, 1.0, {}))
+        return composite_of(self.banded, self.variants, shared)
+
+    @cached_property
+    def assessed(self) -> Assessed:
+        """The model, fitted."""
+        return self.device.assessor.assess(self.model, self.banded.place)
 
 
 def found(device: Device) -> Found:
@@ -169,7 +184,7 @@ def _searched(device: Device, joined: Sequence[Joined], place: Place | None,
     )
     bands = searched(search, place, bands=device.bands)
     chosen = bands[-1] if device.bands is not None else max(bands, key=lambda b: b.value)
-    return Found(chosen, tuple(bands), search, tuple(joined), None)
+    return Found(device, chosen, tuple(bands), search, tuple(joined), None)
 
 
 def _space(
@@ -201,27 +216,17 @@ def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
     return result
 
 
-def composite(device: Device, way: Found) -> Assessed:
-    """Return the bands' model with what has joined, fitted."""
-    shared = [t for j in way.joined for t in j.terms]
-    if device.with_friction:
-        shared.append(FittedTerm(device.friction.id, 1.0, {}))
-    model = composite_of(way.banded, way.variants, shared)
-    return device.assessor.assess(model, way.banded.place)
-
-
 def _with_one_more(device: Device, way: Found) -> Found | Step:
     """Return the bands with the term that makes the records most probable, or why there is none."""
-    assessor = device.assessor
-    now = composite(device, way)
+    now = way.assessed
     there = {j.id for j in way.joined}
     open_ids: Collection[str] = [i for i in device.extras if i not in there]
-    step = _that_predict(assessor, now, grown(assessor, now, open_ids))
+    step = _that_predict(now, grown(device.assessor, now, open_ids))
     while step.best.id and step.best.assessed is not None:
         more = _without_superfluous(device, _joined(device, way, step))
         if any(j.id == step.best.id for j in more.joined):
             return more
-        step = _that_predict(assessor, now, step.without([step.best.id]))
+        step = _that_predict(now, step.without([step.best.id]))
     return step
 
 
@@ -245,19 +250,19 @@ def _joined(device: Device, way: Found, step: Step) -> Found:
 def _without_superfluous(device: Device, way: Found) -> Found:
     """Return the bands without what has joined and need not, among the bands found with it."""
     for joined in way.joined:
-        now = composite(device, way)
+        now = way.assessed
         own = [k for k, p in enumerate(now.model.terms) if p.fitted.id == joined.id]
         less = now.model
         for place in reversed(own):
             less = less.without(place)
         without = device.assessor.assess(less, now.place)
-        if not (is_told(device.assessor, now, own) and is_needed(device.assessor, without, now)):
+        if not (is_told(now, own) and is_needed(without, now)):
             others = [j for j in way.joined if j is not joined]
             way = _searched(device, others, without.place, without)
     return way
 
 
-def _that_predict(assessor: Assessor, now: Assessed, step: Step) -> Step:
+def _that_predict(now: Assessed, step: Step) -> Step:
     """Return a step without what is more probable but does not predict records left out better.
 
     Nor may it be a term whose sign the records don't tell.
@@ -266,8 +271,8 @@ def _that_predict(assessor: Assessor, now: Assessed, step: Step) -> Step:
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
             break
-        told = is_told(assessor, candidate.assessed, candidate.places)
-        if told and predicts_better(assessor, now, candidate.assessed):
+        told = is_told(candidate.assessed, candidate.places)
+        if told and predicts_better(now, candidate.assessed):
             break
         refused.append(candidate.id)
     return step.without(refused)

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from discover.bands.extras import Device, Found, composite
+from discover.bands.extras import Found
 from discover.posterior.spread import idle
 
 
-def told(device: Device, found: Found) -> Found:
+def told(found: Found) -> Found:
     """Return the answer with the most probable structures all of whose terms are told.
 
     Beside a remainder a structure may be probable for terms that, where terms alone predict, may
@@ -20,8 +20,7 @@ def told(device: Device, found: Found) -> Found:
     """
     while not found.banded.quiet:
         banded = found.banded
-        assessed = composite(device, found)
-        doubtful = idle(device.assessor.predicting(assessed))
+        doubtful = idle(found.assessed.predicting)
         by_variant = banded.by_variant.copy()
         first = 0
         for band, place in enumerate(banded.variants):

@@ -151,7 +151,7 @@ def in_few_curves(
 
 def _predicting(assessor: Assessor, found: Assessed) -> ForceModel:
     """Return a model at the numbers that predict best, friction by few curves."""
-    return ForceModel(in_few_curves(assessor, found, assessor.predicting(found))[1])
+    return ForceModel(in_few_curves(assessor, found, found.predicting)[1])
 
 
 def _shapes(identifier: str, scales: Scales) -> list[dict[str, float]]:

@@ -108,7 +108,7 @@ def close_gap(
 def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) -> Gap:
     start, final = found.given, found.final
     noise = noise_percent(final.seen)
-    spread = spread_of(baseline.assessor, final.assessed, final.predicting)
+    spread = spread_of(final.assessed, final.predicting)
     located = places(baseline.rows, start.models)
     left = places(baseline.rows, final.models)
     verdict = _verdict(found, noise)
@@ -212,7 +212,7 @@ def _alternatives(step: Step, effect: str, at: Stage) -> tuple[tuple[str, float]
 
 def _named(baseline: Baseline, entry: Round, number: int, found: Search) -> NamedEffect:
     before, after = entry.before, entry.after
-    spread = spread_of(baseline.assessor, after.assessed, after.predicting)
+    spread = spread_of(after.assessed, after.predicting)
     model = after.predicting
     place = next(
         i for i in reversed(range(len(model.terms))) if model.terms[i].fitted.id == entry.effect

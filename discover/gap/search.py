@@ -93,7 +93,7 @@ class Search:
 
 def stage(baseline: Baseline, assessed: Assessed) -> Stage:
     """Return what an assessed model makes of every record."""
-    best = assessed if baseline.fixed else baseline.assessor.predicting(assessed)
+    best = assessed if baseline.fixed else assessed.predicting
     model, own = best.model, tuple(p.fitted for p in best.model.terms if not p.held)
     if not baseline.fixed:
         model, own = in_few_curves(baseline.assessor, assessed, best)
@@ -113,7 +113,7 @@ def _left_out(
     """Return each record's accuracy by the model fitted to the others."""
     if len(accuracies) < 2:
         return ()
-    fitted, predicted = left_out(baseline.assessor, assessed)
+    fitted, predicted = left_out(assessed)
     growth = np.maximum(predicted - fitted, 0.0)
     return tuple(
         replace(a, error_power=a.error_power + float(g) * a.force_power)
@@ -209,7 +209,7 @@ def _without_superfluous(
         for place in reversed(places):
             less = less.without(place)
         without = baseline.assessor.assess(less, assessed.place)
-        if not is_needed(baseline.assessor, without, assessed):
+        if not is_needed(without, assessed):
             assessed = without
             dropped.append(name)
     return stage(baseline, assessed), tuple(dropped)

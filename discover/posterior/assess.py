@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -46,10 +46,41 @@ class Assessed:
     space: Space
     """Of the records, friction's curve as the model's sensors pass it on."""
 
+    assessor: Assessor = field(repr=False)
+    """By which it is."""
+
     @property
     def model(self) -> Composite:
         """The model at its best values."""
         return self.local.model
+
+    @property
+    def curve(self) -> Part | None:
+        """Departures of friction's curve, where the model has that friction."""
+        return self.assessor.curve_of(self.model)
+
+    @cached_property
+    def predicting(self) -> Assessed:
+        """The model at the numbers that predict best, where nothing is left to a remainder.
+
+        What no term explains is not known in other records. Numbers that lean on a remainder are
+        right only beside it; these are the ones by which the terms alone come closest.
+        """
+        if self.place.remainder <= _SMALL or not self.local.numbers:
+            return self
+        local, place, space = self.local, self.place, self.space
+        visited: dict[Place, float] = {}
+        for _ in range(_ROUNDS):
+            visited, beside = {}, local.beside(space, self.curve)
+            for flat in place.unaided:
+                _at(space, local, beside, visited, flat)
+            before, place = place, max(visited, key=lambda p: visited[p])
+            if place == before:
+                break
+            sizes = place.sizes(space.own_unit)
+            local = fitted(space, self.assessor.evaluator, local.model, sizes, self.curve)
+        best = judged(local, local.beside(space, self.curve), place.sizes(space.own_unit))
+        return replace(self, local=local, place=place, judged=best, visited=visited)
 
 
 @dataclass(frozen=True)
@@ -113,7 +144,7 @@ class Assessor:
             space.forget()
         return Assessed(
             local, place, float(logsumexp(list(visited.values()))), best, visited,
-            is_quiet(visited), space,
+            is_quiet(visited), space, self,
         )
 
     def behind(self, model: Composite) -> Space:
@@ -126,29 +157,6 @@ class Assessor:
         sheet = self.space.sheet
         changed = Behind(model.by_record(sheet), {r.file: i for i, r in enumerate(sheet.rows)})
         return behind(self.space, self.friction, changed)
-
-    def predicting(self, assessed: Assessed) -> Assessed:
-        """Return a model at the numbers that predict best, where nothing is left to a remainder.
-
-        What no term explains is not known in other records. Numbers that lean on a remainder are
-        right only beside it; these are the ones by which the terms alone come closest.
-        """
-        if assessed.place.remainder <= _SMALL or not assessed.local.numbers:
-            return assessed
-        local, curve, space = assessed.local, self.curve_of(assessed.model), assessed.space
-        visited: dict[Place, float] = {}
-        place = assessed.place
-        for _ in range(_ROUNDS):
-            visited, beside = {}, local.beside(space, curve)
-            for flat in assessed.place.unaided:
-                _at(space, local, beside, visited, flat)
-            before, place = place, max(visited, key=lambda p: visited[p])
-            if place == before:
-                break
-            sizes = place.sizes(space.own_unit)
-            local = fitted(space, self.evaluator, local.model, sizes, curve)
-        best = judged(local, local.beside(space, curve), place.sizes(space.own_unit))
-        return Assessed(local, place, assessed.value, best, visited, assessed.quiet, space)
 
     def curve_of(self, model: Composite) -> Part | None:
         """Return the departures of friction's curve where a model has that friction."""

@@ -118,16 +118,16 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
             continue
         found += _tried(assessor, now, chosen, len(ids))
     if not any(c.assessed.quiet for c in found if c.assessed):
-        found = [_predicting(assessor, c) for c in found]
+        found = [_predicting(c) for c in found]
     return _ordered(found, assessor.seed)
 
 
-def _predicting(assessor: Assessor, candidate: Candidate) -> Candidate:
+def _predicting(candidate: Candidate) -> Candidate:
     """Return a candidate with what it leaves of records left out, where there are enough."""
-    if candidate.assessed is None or not assessor.may_leave_out:
+    assessed = candidate.assessed
+    if assessed is None or not assessed.assessor.may_leave_out:
         return candidate
-    best = assessor.predicting(candidate.assessed)
-    return replace(candidate, left=left_out(assessor, best)[1])
+    return replace(candidate, left=left_out(assessed.predicting)[1])
 
 
 def _simulated(identifier: str) -> bool:

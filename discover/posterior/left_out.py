@@ -6,14 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from discover.posterior.assess import Assessed, Assessor
+from discover.posterior.assess import Assessed
+from discover.posterior.sheet import Sheet
 from models.checks import Array, Indices
 
 _DRAWS = 4000  # of records' weights
 _NOTHING = 1e-12  # of a column's energy: rounding of a sum less one of its parts
 
 
-def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
+def left_out(assessed: Assessed) -> tuple[Array, Array]:
     """Return what a model leaves of each record: fitted to all, and to the others alone.
 
     Of one record alone, parts that move alike are left out in turn. What belongs to a record and
@@ -21,10 +22,8 @@ def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    assessor : Assessor
-        Of the records.
     assessed : Assessed
-        The model, at the numbers that predict best.
+        The model; it is left at its numbers, which should be those that predict best.
 
     Returns
     -------
@@ -33,7 +32,7 @@ def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
         share is not used to predict.
     """
     space, local = assessed.space, assessed.local
-    curve = assessor.curve_of(local.model)
+    curve = assessed.curve
     here = space.given(assessed.place.sizes(space.own_unit))
     departing = local.slopes[:, :0] if curve is None else space.columns[:, curve.columns]
     wide = np.zeros(0) if curve is None else assessed.judged.scale * curve.spread
@@ -56,7 +55,7 @@ def left_out(assessor: Assessor, assessed: Assessed) -> tuple[Array, Array]:
             values = _beside(some, prior, seen, np.zeros(prior.size))
             values = _beside(own, prior, ~seen, values)
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
-            found[place, part] = _relative(assessor, np.flatnonzero(inside), left)
+            found[place, part] = _relative(space.sheet, np.flatnonzero(inside), left)
     return found[0], found[1]
 
 
@@ -71,25 +70,25 @@ def _beside(gram: Array, prior: Array, free: Indices, values: Array) -> Array:
     return result
 
 
-def predicts_better(assessor: Assessor, was: Assessed, now: Assessed) -> bool:
+def predicts_better(was: Assessed, now: Assessed) -> bool:
     """Tell whether a model predicts records that are left out better than another one.
 
     A lone part can't tell.
     """
-    if not assessor.may_leave_out:
+    if not was.assessor.may_leave_out:
         return True
-    before, after = (left_out(assessor, assessor.predicting(a))[1] for a in (was, now))
+    before, after = (left_out(a.predicting)[1] for a in (was, now))
     return is_less(after, before)
 
 
-def is_needed(assessor: Assessor, without: Assessed, with_it: Assessed) -> bool:
+def is_needed(without: Assessed, with_it: Assessed) -> bool:
     """Tell whether a model is better with a term: by evidence where one leaves but noise.
 
     Where none does, by records left out.
     """
     if without.quiet or with_it.quiet:
         return with_it.value >= without.value
-    return predicts_better(assessor, without, with_it)
+    return predicts_better(without, with_it)
 
 
 def is_less(now: Array, was: Array) -> bool:
@@ -119,9 +118,8 @@ def predicts_best(errors: Sequence[Array], seed: int) -> Array:
     return np.asarray((records * best + 1.0 / count) / (records + 1.0))
 
 
-def _relative(assessor: Assessor, units: Indices, left: Array) -> float:
+def _relative(sheet: Sheet, units: Indices, left: Array) -> float:
     """Return the mean square of what is left in units, over that of their force."""
-    sheet = assessor.space.sheet
     total = 0.0
     for u, own in zip(units, left, strict=True):
         unit = sheet.units[int(u)]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from discover.posterior.assess import Assessed, Assessor
+from discover.posterior.assess import Assessed
 from discover.posterior.local import judged
 from discover.posterior.model import Composite, Number
 from models.checks import Array
@@ -40,7 +40,7 @@ class Spread:
         return float(np.clip(middle - half, low, high)), float(np.clip(middle + half, low, high))
 
 
-def spread_of(assessor: Assessor, assessed: Assessed, predicting: Composite) -> Spread:
+def spread_of(assessed: Assessed, predicting: Composite) -> Spread:
     """Return the posterior of a model's numbers: a mixture over the sizes that were visited.
 
     It is centred on the numbers that predict best; how far these are from the mixture's own, as a
@@ -55,7 +55,7 @@ def spread_of(assessor: Assessor, assessed: Assessed, predicting: Composite) -> 
     kept = [i for i in np.argsort(-weights) if weights[i] >= _LEAST] or [int(weights.argmax())]
     share = weights[kept] / weights[kept].sum()
     means, covariances = [], []
-    beside = local.beside(assessed.space, assessor.curve_of(local.model))
+    beside = local.beside(assessed.space, assessed.curve)
     for i in kept:
         sizes = places[i].sizes(assessed.space.own_unit)
         found = judged(local, beside, sizes).solved
@@ -84,12 +84,12 @@ def idle(predicting: Assessed) -> list[int]:
     return sorted(found, key=lambda place: found[place])
 
 
-def is_told(assessor: Assessor, assessed: Assessed, terms: Collection[int]) -> bool:
+def is_told(assessed: Assessed, terms: Collection[int]) -> bool:
     """Tell whether the records tell the sign of a coefficient among some of a model's terms.
 
     A term that is probable beside a remainder, but that a model which has to predict by itself
     may as well do without, stands for a part of that remainder.
     """
-    spread = spread_of(assessor, assessed, assessor.predicting(assessed).model)
+    spread = spread_of(assessed, assessed.predicting.model)
     own = [i for i, n in enumerate(spread.numbers) if n.term in terms and n.shape is None]
     return bool(np.any(np.abs(spread.mean[own]) > _SURE * spread.deviation[own]))

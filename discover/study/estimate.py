@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.bands.extras import Found, composite
+from discover.bands.extras import Found
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.model import Composite, Number
 from discover.posterior.reversal import Reversal, with_few_curves
@@ -42,16 +42,16 @@ class Estimates:
 def estimated(prepared: Prepared, found: Found) -> Estimates:
     """Return what holds in each band, in numbers."""
     assessor = prepared.device.assessor
-    assessed = composite(prepared.device, found)
-    best = assessor.predicting(assessed)
+    assessed = found.assessed
+    best = assessed.predicting
     reversal, model = None, best.model
     if prepared.device.with_friction:
         reversal, model = with_few_curves(assessor, assessed, best)
     none = reversal is not None and not any(t.coefficient for t in reversal.terms)
-    spread = spread_of(assessor, assessed, model)
+    spread = spread_of(assessed, model)
     shares = found.banded.shares
     by_band: list[list[TermEstimate]] = [[] for _ in range(found.banded.bands)]
-    mixed = [normals(prepared.device, found, spread, b) for b in range(found.banded.bands)]
+    mixed = [normals(found, spread, b) for b in range(found.banded.bands)]
     for place, placed in enumerate(model.terms):
         if none and placed.fitted.id == prepared.device.friction.id:
             continue  # the records are best predicted without friction

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp, ndtr
 
-from discover.bands.extras import Device, Found, composite
+from discover.bands.extras import Found
 from discover.posterior.model import Number
 from discover.posterior.spread import Spread, spread_of
 from models.checks import Array
@@ -53,14 +53,12 @@ def interval_of(parts: Sequence[Normal], low: float, high: float) -> tuple[float
 
 
 def normals(
-    device: Device, found: Found, spread: Spread, band: int
+    found: Found, spread: Spread, band: int
 ) -> dict[tuple[str, str | None], list[Normal]]:
     """Return each number of a band's structure over the sets of terms that it may have.
 
     Parameters
     ----------
-    device : Device
-        What was searched.
     found : Found
         The answer.
     spread : Spread
@@ -80,8 +78,7 @@ def normals(
         variants = list(found.banded.variants)
         variants[band] = place
         way = replace(found, banded=replace(found.banded, variants=tuple(variants)))
-        assessed = composite(device, way)
-        own = spread_of(device.assessor, assessed, device.assessor.predicting(assessed).model)
+        own = spread_of(way.assessed, way.assessed.predicting.model)
         _take(known, way, own, band, weight)
     return known
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from discover.bands.composite import composite_of
 from discover.bands.extras import Found
 from discover.dean import DeanCheck
 from discover.next_test import NextTest, Rival, admissible_tests, propose
@@ -18,7 +17,6 @@ from discover.study.estimate import Estimates
 from discover.study.prepare import Prepared
 from discover.study.result import StudyBand, StudyBoundary
 from models.checks import Array
-from models.constitutive import FittedTerm
 
 _DEAN = ("a boundary at fixed Dean number", "a boundary at fixed frequency")
 _HALVED = float(np.log(2.0))
@@ -69,7 +67,7 @@ def _between_structures(
     """Return the test that best tells a band's two leading structures apart."""
     chances = core_probabilities(found, band)
     names = sorted(chances, key=lambda name: -chances[name])[:2]
-    rivals = [_rival(prepared, found, estimates, band, name, chances[name]) for name in names]
+    rivals = [_rival(found, estimates, band, name, chances[name]) for name in names]
     frequencies, amplitudes = admissible_tests(*tested, limits)
     banded = found.banded
     if banded.bands > 1:
@@ -97,7 +95,7 @@ def _line_noise(prepared: Prepared) -> float:
 
 
 def _rival(
-    prepared: Prepared, found: Found, estimates: Estimates, band: int, name: str, chance: float
+    found: Found, estimates: Estimates, band: int, name: str, chance: float
 ) -> Rival:
     """Return a structure in a band, fitted beside the other bands' own."""
     banded = found.banded
@@ -107,10 +105,7 @@ def _rival(
     )
     variants = list(banded.variants)
     variants[band] = best
-    shared = [t for j in found.joined for t in j.terms]
-    if prepared.device.with_friction:
-        shared.append(FittedTerm(prepared.device.friction.id, 1.0, {}))
-    model = composite_of(replace(banded, variants=tuple(variants)), found.variants, shared)
+    model = replace(found, banded=replace(banded, variants=tuple(variants))).model
     assessor = estimates.assessor
     sizes = banded.place.sizes(assessor.space.own_unit)
     curve = assessor.curve_of(model)

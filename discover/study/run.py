@@ -66,7 +66,7 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
     chosen = options or StudyOptions()
     with threadpool_limits(1):  # its matrices are small: more threads take longer
         prepared = prepare(campaign, chosen)
-        answer = told(prepared.device, found(prepared.device))
+        answer = told(found(prepared.device))
         return _study(campaign, chosen, prepared, answer, estimated(prepared, answer))
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from discover.bands.extras import composite, found
+from discover.bands.extras import found
 from discover.bands.told import told
 from discover.posterior.spread import idle
 from discover.study import StudyOptions
@@ -23,7 +23,7 @@ def test_idle_terms_make_no_structure():
     records = campaign(yielding, frequencies=(0.1, 0.3, 1.0, 3.0), noise=0.002)
     device = replace(prepare(records, StudyOptions()).device, extras=(), bands=1)
     before = found(device)
-    after = told(device, before)
+    after = told(before)
     assert not before.banded.quiet
     assert not working(device, before)
     assert working(device, after)
@@ -31,6 +31,6 @@ def test_idle_terms_make_no_structure():
 
 def working(device, answer):
     """Tell whether every term of the bands' structures makes a force of its sign."""
-    best = device.assessor.predicting(composite(device, answer))
+    best = answer.assessed.predicting
     count = sum(len(p.terms) for v in answer.banded.variants for p in answer.variants[v].parts)
     return not any(place < count for place in idle(best))

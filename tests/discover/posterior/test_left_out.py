@@ -62,4 +62,4 @@ def predicted(device, model):
     """Return what a model leaves of each record, predicted by the others."""
     assessor = device.assessor
     assessed = assessor.assess(Composite.of(model), assessor.space.start)
-    return left_out(assessor, assessor.predicting(assessed))[1]
+    return left_out(assessed.predicting)[1]
