@@ -21,6 +21,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import solve_triangular
 
+from discover.posterior.evidence import root_of
 from discover.posterior.sheet import Sheet
 from models.checks import Array, Indices
 
@@ -272,9 +273,7 @@ def given(products: Products, sizes: Sizes) -> Given:
             np.full(own, sizes.friction),
         ]
     )
-    inner = np.linalg.cholesky(
-        np.eye(nuisance) + spread[:, None] * gram[:, :nuisance, :nuisance] * spread
-    )
+    inner = root_of(gram[:, :nuisance, :nuisance], spread)
     pulled = spread[:, None] * gram[:, :nuisance]
     taken = np.asarray(np.linalg.solve(inner, pulled), dtype=float)
     seen = np.r_[np.arange(functions), np.arange(nuisance, gram.shape[1])]

@@ -11,8 +11,6 @@ from models.checks import Array, Indices
 
 _LOG_2 = float(np.log(2.0))
 _LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))
-_ROUNDED = 1e-13
-"""Of a column's product with itself: what rounding may take from it."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +23,23 @@ class Solved:
     """(..., K)."""
     covariance: Array
     """(..., K, K)."""
+
+
+def root_of(gram: Array, spread: Array) -> Array:
+    """Return the lower factor (..., K, K) of one and products of columns, these over their spread.
+
+    None of the whole's eigenvalues is below one. Where rounding has taken that from columns that
+    are alike, the lowest are set to one.
+    """
+    whole = np.eye(gram.shape[-1]) + spread[..., :, None] * gram * spread[..., None, :]
+    try:
+        return np.asarray(np.linalg.cholesky(whole), dtype=float)
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh(whole)
+        half = np.sqrt(np.maximum(values, 1.0))[..., :, None] * np.swapaxes(vectors, -1, -2)
+        upper = np.linalg.qr(half, mode="r")
+        lower = np.swapaxes(upper, -1, -2)
+        return np.asarray(lower * np.sign(np.diagonal(upper, axis1=-2, axis2=-1))[..., None, :])
 
 
 def solved(
@@ -46,10 +61,7 @@ def solved(
     log_normal : float or ndarray, shape (...)
         Log density of the measured force without any column.
     """
-    count = gram.shape[-1]
-    inner = spread[..., :, None] * gram * spread[..., None, :]
-    inner = inner + np.eye(count) * (1.0 + _ROUNDED * inner)  # columns alike stay apart
-    factor = np.linalg.cholesky(inner)
+    factor = root_of(gram, spread)
     inverse = np.linalg.inv(factor)
     half = np.einsum("...ij,...j->...i", inverse, spread * side)
     root = inverse * spread[..., None, :]
@@ -110,8 +122,7 @@ def without(gram: Array, taken: Indices, spread: Array) -> tuple[Array, float]:
     gain : float
         Nats.
     """
-    inner = np.eye(taken.size) + spread[:, None] * gram[np.ix_(taken, taken)] * spread
-    factor = np.linalg.cholesky(inner)
+    factor = root_of(gram[np.ix_(taken, taken)], spread)
     half = np.linalg.solve(factor, spread[:, None] * gram[taken])
     left = gram - half.T @ half
     gain = 0.5 * float(half[:, -1] @ half[:, -1]) - float(np.sum(np.log(np.diag(factor))))

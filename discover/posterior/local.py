@@ -10,7 +10,7 @@ from scipy.optimize import lsq_linear
 from scipy.special import logsumexp
 
 from discover.posterior.covariance import Sizes
-from discover.posterior.evidence import Solved, solved
+from discover.posterior.evidence import Solved, root_of, solved
 from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Evaluator, Number
 from discover.posterior.space import Part, Space
@@ -167,8 +167,7 @@ def _within_bounds(local: Local, answer: Judged, scales: Scales) -> Array:
     """
     low, high = np.array([_range(local, n, scales) for n in local.numbers]).T
     spread = local.spread
-    inner = np.eye(spread.size) + spread[:, None] * answer.gram * spread
-    factor = np.linalg.cholesky(inner)
+    factor = root_of(answer.gram, spread)
     goal = np.linalg.solve(factor, spread * answer.side)
     found = lsq_linear(factor.T, goal, (low / spread, high / spread), method="bvls")
     return np.asarray(found.x) * spread

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.posterior.covariance import Given
-from discover.posterior.evidence import solved
+from discover.posterior.evidence import root_of, solved
 from discover.posterior.space import Part
 from models.checks import Array, Indices
 
@@ -106,8 +106,7 @@ def sums_of_one(
     found = []
     for some in scales:
         spread = _spreads(common, some)
-        inner = np.eye(at.size) + spread[:, None] * gram[: at.size, : at.size] * spread
-        factor = np.linalg.cholesky(inner)
+        factor = root_of(gram[: at.size, : at.size], spread)
         half = np.linalg.solve(factor, spread[:, None] * gram[: at.size, at.size :])
         left = gram[at.size :, at.size :] - half.T @ half
         normal = here.log_centre - float(np.sum(np.log(np.diag(factor)))) - 0.5 * left[-1, -1]
@@ -129,8 +128,7 @@ def sums_of_many(
     spread = _spreads(common, scales)
     taken = shared.sum(axis=0)
     whole = within[:, :count].sum(axis=0) - taken[:, :count].T @ taken
-    inner = np.eye(count) + spread[:, None] * whole[:, :count] * spread
-    factor = np.linalg.cholesky(inner)
+    factor = root_of(whole[:, :count], spread)
     across = within[:, :count] - np.einsum("sc,usk->uck", taken[:, :count], shared)
     more = np.linalg.solve(factor, spread[:, None] * across[..., count:])
     shared = np.concatenate([shared[..., count:], more], axis=1)

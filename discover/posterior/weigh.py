@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import log_ndtr
 
 from discover.posterior.covariance import Sizes
-from discover.posterior.evidence import without
+from discover.posterior.evidence import root_of, without
 from discover.posterior.local import Local
 from discover.posterior.metric import Compared, Comparison
 from discover.posterior.space import Part, Space
@@ -143,8 +143,7 @@ def _gains(left: Array, entries: Sequence[Trial], size: Array) -> list[Gain]:
 
 def _several(gram: Array, side: Array, size: Array) -> tuple[float, tuple[float, ...]]:
     """Return the gain of columns together, and their coefficients."""
-    inner = np.eye(side.size) + size[:, None] * gram * size
-    factor = np.linalg.cholesky(inner)
+    factor = root_of(gram, size)
     half = np.linalg.solve(factor, size * side)
     value = 0.5 * float(half @ half) - float(np.sum(np.log(np.diag(factor))))
     mean = size * np.linalg.solve(factor.T, half)

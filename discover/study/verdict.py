@@ -107,7 +107,7 @@ def structure_name(band: Mapping[str, Any]) -> str:
     if name == OTHER:
         return f"other ({listed(_names(band['terms']))})"
     orders = [t["order"] for t in band["terms"] if t.get("order") is not None]
-    return f"{name} of order {listed(significant(o, 3) for o in orders)}" if orders else name
+    return f"{name} of order {listed(significant(round(o, 4), 3) for o in orders)}" if orders else name
 
 
 def _besides(band: Mapping[str, Any]) -> str:

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import dblquad, quad
 from scipy.stats import norm
 
-from discover.posterior.evidence import solved, without
+from discover.posterior.evidence import root_of, solved, without
 from tests.discover.posterior.small import log_density
 
 SIZE = 12
@@ -103,3 +103,17 @@ def test_columns_that_are_the_same_tell_their_sum():
     found = solved(np.full((2, 2), size), np.full(2, 3.0 * size), np.ones(2), np.zeros(2), 0.0)
     assert float(found.mean.sum()) == pytest.approx(3.0, rel=1e-6)
     assert np.isfinite(found.log_evidence)
+
+
+def test_columns_that_rounding_makes_worse_than_alike_are_still_factored():
+    column = np.array([1e9, 1.0])
+    gram = np.outer(column, column)
+    gram = np.block([[gram, gram], [gram, gram]])
+    gram[0, 2] = gram[2, 0] = gram[0, 0] * (1.0 + 1e-12)  # as sums less their parts are rounded
+    spread = np.ones(4)
+    with pytest.raises(np.linalg.LinAlgError):
+        np.linalg.cholesky(np.eye(4) + gram)
+    factor = root_of(gram, spread)
+    assert np.all(np.diag(factor) >= 1.0 - 1e-6)
+    np.testing.assert_array_equal(factor, np.tril(factor))
+    np.testing.assert_allclose(factor @ factor.T, np.eye(4) + gram, rtol=1e-9, atol=1e-6 * 1e9)
