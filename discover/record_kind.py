@@ -19,6 +19,7 @@ KINDS = ("sine", "periodic", "transient", "trajectory")
 _FEWEST_CYCLES = 1.5
 _MOST_DISTORTION = 0.2  # of the velocity: a hydraulic actuator has up to 0.1, a triangle wave 1
 _MOST_STRUCTURE = 0.01  # share of the variance that is neither harmonics nor broad-band noise
+_FEWEST_PERIODS = 4  # from which averaging over periods tells noise from motion
 _REPEATS = 1e-3  # half the mean square change from period to period over the variance
 _REST_SPEED = 0.02  # of the peak speed
 _REST_FORCE = 0.15  # of the peak force
@@ -69,8 +70,9 @@ def classify(record: Record) -> RecordKind:
 
     A record is a *sine* where, outside start-up and run-down, one frequency with few percent of
     harmonics explains all but broad-band noise for at least one and a half cycles; *periodic*
-    where a waveform repeats over at least two whole periods of an integer number of samples;
-    a *transient* where motion and force begin from rest; and a *trajectory* otherwise.
+    where a waveform repeats over at least four whole periods of an integer number of samples;
+    a *transient* where motion and force begin from rest; and a *trajectory* otherwise, of whole
+    periods where it repeats two or three times.
 
     Parameters
     ----------
@@ -126,6 +128,8 @@ def _classified(record: Record) -> RecordKind:
     if repeated is not None:
         usable, samples = repeated
         count = (usable.stop - usable.start) / samples
+        if count < _FEWEST_PERIODS:
+            return RecordKind("trajectory", usable, None, None, None, rest)
         return RecordKind("periodic", usable, None, samples * record.step, count, rest)
     kind = "transient" if rest and _force_at_rest(record.force) else "trajectory"
     return RecordKind(kind, slice(0, size), None, None, None, rest)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -11,6 +13,9 @@ from discover.cli.invocation import Invocation, to_copy
 from discover.cli.results import after_reading, deliver, result_folder, shown_path, working
 from discover.cli.shipped import HIDDEN, HIDDEN_MODEL, shipped_campaign
 from models.checks import number, one_of
+
+if TYPE_CHECKING:
+    from discover.records import Finding
 
 
 def discover(
@@ -47,7 +52,7 @@ def discover(
     from discover.report.study import study_files
     from discover.study import StudyOptions, run_study
     from discover.study.verdict import verdict_lines
-    from discover.words import error_lines
+    from discover.words import error_lines, warning_lines
 
     with working(f"Reading {source}"):
         measured = read_campaign(source)
@@ -78,10 +83,31 @@ def discover(
         name="study.json",
         folder=folder,
         files=files,
-        summary=(*error_lines(document), *verdict_lines(document), next_command(campaign, folder)),
+        summary=(
+            *error_lines(document),
+            *verdict_lines(document),
+            *warning_lines({"findings": about_data(document["findings"], measured.findings)}),
+            next_command(campaign, folder),
+        ),
         as_json=as_json,
     )
     return 0
+
+
+def about_data(
+    findings: Sequence[Mapping[str, Any]], read: Sequence[Finding]
+) -> list[Mapping[str, Any]]:
+    """Return the findings of a study that its verdict does not tell in other words.
+
+    Parameters
+    ----------
+    findings : sequence of mapping
+        Of the study, as in its document.
+    read : sequence of Finding
+        Of reading the campaign.
+    """
+    known = [finding.to_dict() for finding in read]
+    return [f for f in findings if f.get("record") is not None or f in known]
 
 
 def next_command(campaign: Path | None, folder: Path) -> str:

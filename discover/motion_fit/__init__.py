@@ -17,8 +17,6 @@ from discover.record_kind import classify
 from discover.records import Record
 from models.checks import InputError
 
-_FEWEST_PERIODS = 4  # from which averaging over periods tells noise from motion
-
 
 def observe(record: Record) -> Observation:
     """Return the observation of a record of any kind.
@@ -57,11 +55,9 @@ def observe(record: Record) -> Observation:
             )
         record = record.even
         kind = classify(record)
-    repeats = (kind.cycles or 0.0) >= _FEWEST_PERIODS
-    if kind.kind == "periodic" and kind.period is not None and repeats:
+    if kind.kind == "periodic" and kind.period is not None:
         return observe_periodic(record, kind.usable, round(kind.period / record.step))
-    name = kind.kind if kind.kind == "transient" else "trajectory"
-    return observe_band(record, kind.usable, name)
+    return observe_band(record, kind.usable, kind.kind)
 
 
 def observe_all(records: Sequence[Record], jobs: int) -> tuple[Observation, ...]:

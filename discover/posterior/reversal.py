@@ -120,7 +120,7 @@ def reversal_of(
     sizes = assessed.place.sizes(space.own_unit)
     follows, sure, size, interval = _turning(space, sizes, without, whole, curve)
     found = Reversal(curve.id, terms, follows, sure, size, interval, 0.0)
-    return replace(found, differs=sizes.friction / max(found.sliding, 1e-300))
+    return replace(found, differs=sizes.friction / found.sliding) if found.sliding > 0.0 else found
 
 
 def _few(whole: Array, total: Array, curves: Sequence[FittedTerm]) -> tuple[FittedTerm, ...]:

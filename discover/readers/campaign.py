@@ -174,7 +174,7 @@ class _Reading:
             part = source.part if entry.part is not None or len(sources) > 1 else ""
             try:
                 found = read_record_of_any_length(
-                    source, entry, names=own, units=self.units, part=part
+                    source, entry, names=own, units={**self.units, **entry.units}, part=part
                 )
             except InputError as error:
                 self.errors.append(error)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from discover.readers.columns import find_column, split_header
+from discover.readers.draft_units import common_units, own_units, settled
 from discover.readers.entries import Entry
 from discover.readers.fastest_motion import fastest_motion
 from discover.readers.formats import OPENERS, open_file
@@ -20,7 +21,6 @@ from discover.readers.toml_text import campaign_text
 from discover.records import Finding, Record
 from models.checks import InputError, printable
 
-_LARGER = ("mm", "ms", "kN")  # of two guesses of a unit the one that some record needs
 _QUARTER = 4
 _NO_TIME = "no column for time among"
 
@@ -137,24 +137,26 @@ def draft_campaign(
         found += [(_named(entry, book, source), source, guess) for source, guess in parts]
         if not parts:
             left_out.append((file, lacking))
-    units = _units([guess for _, _, guess in found], answers)
+    guesses = settled([guess for _, _, guess in found], answers.units)
+    units = common_units(guesses)
     columns = _columns([(source, guess) for _, source, guess in found])
     records: list[DraftRecord] = []
-    for entry, source, guess in found:
+    for (entry, source, _), guess in zip(found, guesses, strict=True):
         own = _own_channel(source, guess, columns)
+        entry = replace(entry, channel=own, units=own_units(guess, units))
         try:
             read = read_record_of_any_length(
                 source,
-                replace(entry, channel=own),
+                entry,
                 names={**columns, **own},
-                units=units,
+                units={**units, **entry.units},
                 part=str(entry.part or ""),
             )
         except InputError as error:
             left_out.append((entry.label(str(entry.part or "")), str(error)))
             continue
         record, findings, _ = read
-        records.append(DraftRecord(replace(entry, channel=own), guess, record, tuple(findings)))
+        records.append(DraftRecord(entry, guess, record, tuple(findings)))
     if not records:
         file, why = left_out[0] if left_out else ("", "no file that can be read")
         more = f" (and {len(left_out) - 1} more files)" if len(left_out) > 1 else ""
@@ -243,21 +245,6 @@ def _named(entry: Entry, book: Book, source: Source) -> Entry:
     if len(book.parts) == 1 or not source.part:
         return entry
     return replace(entry, key=book.key, part=source.part)
-
-
-def _units(guesses: Sequence[TableGuess], answers: Answers) -> dict[str, str]:
-    """Return ``[units]``: what some file does not state, by the user, another file or a guess."""
-    units = {}
-    for quantity in ("time", "displacement", "force", "velocity", "acceleration", "temperature"):
-        own = [g.columns[quantity] for g in guesses if quantity in g.columns]
-        open_ = [g.unit for g in own if not g.unit_stated]
-        if not open_:
-            continue
-        stated = Counter(g.unit for g in own if g.unit_stated)
-        larger = [unit for unit in _LARGER if unit in open_]
-        likely = stated.most_common(1)[0][0] if stated else (larger or open_)[0]
-        units[quantity] = answers.units.get(quantity, likely)
-    return units
 
 
 def _columns(tables: Sequence[tuple[Source, TableGuess]]) -> dict[str, str]:

@@ -32,6 +32,8 @@ class Entry:
     """Headers by quantity that are this record's own."""
     channel_told: bool = False
     """Whether its name has to tell them, since other records are of the same samples."""
+    units: Mapping[str, str] = field(default_factory=dict)
+    """Units by quantity that are this record's own, in place of those of ``[units]``."""
     cells: str = ""
     """Range of a sheet's cells, "" for all."""
     span: tuple[float | None, float | None] = (None, None)

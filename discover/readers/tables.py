@@ -36,7 +36,7 @@ _RIG = {
 }
 _RECORD = (
     "file", "frequency", "amplitude", "held_out", "sheet", "group", "channel", "range",
-    "sampling_rate",
+    "sampling_rate", "units",
 )  # fmt: skip
 _SYSTEM = {"mass": "mass", "stiffness": "stiffness"}
 
@@ -70,8 +70,12 @@ def read_column_names(value: object) -> dict[str, str]:
 
 def read_column_units(value: object) -> dict[str, str]:
     """Return ``[units]``: checked units by quantity."""
-    where = f"{_FILE} [units]"
-    table = _table(value, QUANTITIES, where="[units]")
+    return _units(value, "[units]")
+
+
+def _units(value: object, place: str) -> dict[str, str]:
+    where = f"{_FILE} {place}"
+    table = _table(value, QUANTITIES, where=place)
     return {
         key: check_unit(unit, QUANTITIES[key], name=key, where=where) for key, unit in table.items()
     }
@@ -205,6 +209,7 @@ def _entry(table: Mapping[str, Any], place: str) -> Entry:
         key=key,
         part=part,
         channel=_channel(table.get("channel", {}), place),
+        units=_units(table.get("units", {}), f"{place.removeprefix(_FILE).strip()} units"),
         cells=cells,
         span=span,
         span_text="" if cells else " ".join(str(table.get("range", "")).split()),

@@ -52,9 +52,10 @@ def _entry_lines(entry: Entry) -> list[str]:
     lines = ["[[records]]", f"file = {quoted(entry.file)}"]
     if entry.part is not None:
         lines.append(f"{entry.key} = {quoted(str(entry.part))}")
-    if entry.channel:
-        inside = ", ".join(f"{q} = {quoted(h)}" for q, h in entry.channel.items())
-        lines.append(f"channel = {{ {inside} }}")
+    for key, own in (("channel", entry.channel), ("units", entry.units)):
+        if own:
+            inside = ", ".join(f"{q} = {quoted(text)}" for q, text in own.items())
+            lines.append(f"{key} = {{ {inside} }}")
     if entry.step is not None:
         lines.append(f'sampling_rate = "{1.0 / entry.step:.12g} Hz"')
     if entry.held_out:

@@ -192,11 +192,14 @@ def _extra(group: Sequence[Mapping[str, Any]]) -> str:
 
 
 def friction_text(band: Mapping[str, Any]) -> str:
-    """Return a band's friction in words: how much, how it reverses, how records differ."""
+    """Return a band's friction in words: how much, how it reverses, how records differ.
+
+    It is "" without friction: of none there is no way in which it reverses.
+    """
     friction = band.get("friction")
-    if not friction:
-        return ""
     size = sum(t["coefficient"] for t in band["terms"] if t["id"] == FRICTION)
+    if not friction or not size:
+        return ""
     text = f"{significant(size, 3)} N, {friction['curve']}"
     if "presliding_displacement" in friction or "transition_speed" in friction:
         pair = ("a displacement", "a speed")

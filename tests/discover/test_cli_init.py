@@ -67,6 +67,32 @@ def test_a_folder_of_tdms_xlsx_and_lvm(here: Path, capsys: pytest.CaptureFixture
     assert main(["check", "lab", "-o", "checked"]) == 0
 
 
+def test_instruments_of_one_folder_may_write_different_units(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import h5py
+    from scipy.io import savemat
+
+    (here / "lab").mkdir()
+    (here / "lab" / "monday.tdms").write_bytes(instruments.tdms({"run 1": 1.0}))  # mm and kN
+    x, force = _test(0.7)
+    with h5py.File(here / "lab" / "tuesday.h5", "w") as file:
+        for name, values, unit in (("time", TIME, "s"), ("disp", x, "m"), ("load", force, "N")):
+            file.create_dataset(name, data=values).attrs["units"] = unit
+    x, force = _test(0.5)
+    savemat(here / "lab" / "wednesday.mat", {"time": TIME, "travel": x, "load": force})
+    assert main(["init", "lab", "-o", "page"]) == 0
+    assert "Left out" not in capsys.readouterr().out
+    monday, *others = read_campaign("lab").records
+    assert np.ptp(monday.displacement) == pytest.approx(16e-3, rel=1e-3)
+    assert np.ptp(monday.force) == pytest.approx(1200.0, rel=1e-3)
+    for record, frequency in zip(others, (0.7, 0.5), strict=True):
+        x, force = _test(frequency)
+        np.testing.assert_allclose(record.displacement, x, rtol=1e-6, atol=1e-12)
+        np.testing.assert_allclose(record.force, force, rtol=1e-6, atol=1e-9)
+    assert main(["check", "lab", "-o", "checked"]) == 0
+
+
 @pytest.mark.parametrize(
     ("header", "sure"),
     [

@@ -141,6 +141,23 @@ def test_check_without_a_campaign_takes_the_shipped_one_as_discover_does(
     assert (here / "inerter-out" / "check-laminar" / "check.json").is_file()
 
 
+def test_a_spring_alone_is_ordinary_data(here, capsys):
+    phase = np.arange(600) / 10.0
+    rows = np.column_stack([phase / 10.0, 0.01 * np.sin(phase), 2000.0 * np.sin(phase)])
+    header = "time [s],displacement [m],force [N]"
+    np.savetxt("spring.csv", rows, delimiter=",", header=header, comments="", fmt="%.9g")
+    Path("campaign.toml").write_text('[[records]]\nfile = "spring.csv"\n')
+    for verb in (["check"], ["discover"], ["gap", "--model", "fit:stiffness"]):
+        assert main([verb[0], ".", *verb[1:], "-o", verb[0]]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert "\nFriction:" not in out
+    study = json.loads((here / "discover" / "study.json").read_text())
+    assert study["relative_error_percent"] < 0.01
+    friction = study["bands"][0].get("friction") or {"differs_by_record": 0.0}
+    assert friction["differs_by_record"] < 10.0
+
+
 def test_check_fails_where_the_force_has_the_wrong_sign(campaign, here, capsys):
     turned = here / "turned"
     turned.mkdir()

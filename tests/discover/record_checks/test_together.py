@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from discover.cli import main
 from discover.data_check import check_campaign
 from discover.gap import close_gap
 from discover.readers import read_campaign
@@ -106,6 +107,21 @@ def test_repeats_of_one_condition_belong_together_and_more_friction_does_not(
     for answer in (run_study(campaign), close_gap(campaign, baseline, effects=["stiffness"])):
         named = [f.record for f in answer.findings if "does not belong" in f.text]
         assert named == ["pressure.csv"]
+
+
+def test_the_terminal_tells_it_beside_the_verdict(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = {f"run-{k}.csv": _strokes(5.0, k) for k in (1, 2, 3)}
+    files["pressure.csv"] = _strokes(12.0, 4)
+    _written(tmp_path, files)
+    chosen = ["--terms", "viscous-damping,coulomb-friction", "-o", str(tmp_path / "out")]
+    assert main(["discover", str(tmp_path), *chosen]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    told = [n for n, line in enumerate(lines) if "does not belong with" in line]
+    assert [lines[n].split(": ")[:2] for n in told] == [["Warning", "pressure.csv"]]
+    assert lines[0].startswith("Verdict: ")
+    assert lines[told[-1] + 1].startswith("Next: ")
 
 
 @pytest.mark.parametrize("name", ["segmented", "hidden-effect", "device-12-rig"])
