@@ -225,7 +225,7 @@ def test_check_takes_one_file(here: Path, capsys: pytest.CaptureFixture[str]) ->
     _csv(here / "a.csv", "Zeit [s];Weg [mm];Kraft", 2.0)
     assert main(["check", "a.csv"]) == 0
     out = capsys.readouterr().out
-    assert "force is column 'Kraft' (likely: its name is used for it), in N (guessed)" in out
+    assert "force is column 'Kraft' (likely: the name says so), in N (guessed)" in out
     assert "the unit of force is a guess, 'N': no file states it" in out
     _csv(here / "b.csv", "time [s];displacement [mm];force [kN]", 2.0)
     assert read_campaign(here / "b.csv").findings == ()
