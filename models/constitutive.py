@@ -33,7 +33,7 @@ _ROUNDED = 1e-6  # of a bound: stored values are rounded
 WHOLE_ORDERS = {"stiffness": 0.0, "viscous-damping": 1.0, "inertia": 2.0}
 """Of the derivative of displacement that a term is."""
 _FIRST_POWER = re.compile(r"\(([^()]*)\)\^1(?![\d.])|\^1(?![\d.])")
-_NO_POWER = re.compile(r" ?\([^()]*\)\^0(?![\d.])")
+_NO_POWER = re.compile(r"(?: ?\([^()]*\)|[ /]\w+)\^0(?![\d.])")
 
 
 @dataclass(frozen=True)

@@ -96,6 +96,7 @@ def environment() -> jinja2.Environment:
         quantity=words.quantity,
         probability=words.probability,
         interval=words.interval,
+        kind_name=words.kind_name,
         zero_possible=words.zero_possible,
         counted=words.counted,
         band_range=words.band_range,
