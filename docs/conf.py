@@ -18,6 +18,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "mathml",
     "generate",
+    "keys",
 ]
 root_doc = "index"
 exclude_patterns = ["_build"]

@@ -72,7 +72,9 @@ def design(
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
 ) -> int:
-    """Find the geometry and fluid with the lowest critical frequency within bounds.
+    """Find the design with the lowest critical frequency.
+
+    Geometry and fluid, within bounds.
 
     Exits 1 where nothing fits; the result then says which bounds keep every design out.
     """

@@ -29,10 +29,10 @@ def simulate(
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
 ) -> int:
-    """Predict the force of each model for the measured motion, beside the measured force.
+    """Predict each model's force for the measured motion.
 
-    Several models are ranked on held-out records. Writes simulation.json, a page, and one
-    CSV a record.
+    It stands beside the measured force. Several models are ranked on held-out records. Writes
+    simulation.json, a page, and one CSV a record.
     """
     *names, campaign = arguments
     if not names:

@@ -74,7 +74,11 @@ def synth(
     title: Annotated[str | None, typer.Option("--title", help="Of the campaign.")] = None,
     seed: options.Seed = options.DEFAULT_SEED,
 ) -> int:
-    """Write a campaign of sine tests from the virtual test rig, or from a model with --model."""
+    """Write a campaign from the virtual test rig.
+
+    Sine tests of a device, with effects hidden in it by --hide; with --model exact records of a
+    model, and noise.
+    """
     if model is not None and hide:
         raise InputError("--hide", expected="used with the rig", found="--model", where="synth")
     if model is None and effect_files:

@@ -26,7 +26,7 @@ _LEVELS = {"warning": ("o", "#e69f00", "warning"), "error": ("x", "#c02600", "er
 _CRITERION = 100.0
 _WIDTH, _HEIGHT = 660, 490
 _MARK = 6.0  # half a mark's width, CSS pixels
-_ROOM = (3.0, 1.0)  # between a number and what stands beside, above or below it, CSS pixels
+_ROOM = (6.0, 1.0)  # between a number and what stands beside, above or below it, CSS pixels
 
 
 def plan_map(data: PlanFigureData) -> str | None:

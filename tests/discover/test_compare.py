@@ -187,3 +187,17 @@ def test_simulate_says_where_a_name_needs_a_device(campaign, tmp_path, monkeypat
     (tmp_path / "own" / "campaign.toml").write_text('[[records]]\nfile = "a.csv"\n')
     assert main(["simulate", "foim", "own"]) == 2
     assert "simulate: foim must be used with a device" in capsys.readouterr().err
+
+
+def test_compare_fits_terms_to_the_records_that_it_is_given(
+    campaign, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    terms = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
+    assert main(["compare", terms, "ioim-laminar", "--on", str(campaign), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    (inertance,) = [q for q in document["quantities"] if q["term"] == "inertia"]
+    fitted, made = (v["value"] for v in inertance["values"])
+    assert fitted == pytest.approx(made, rel=0.01)
+    assert main(["compare", terms, "ioim-laminar"]) == 2
+    assert "with --on CAMPAIGN, which it is fitted to" in capsys.readouterr().err
