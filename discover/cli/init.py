@@ -131,7 +131,8 @@ def init(
     with working("Drawing"):
         figures = draft_figures(draft)
         invocation: Invocation = context.obj
-        page = draft_report(draft, document, figures, lines=lines, command=invocation.plain())
+        command = invocation.replacing()
+        page = draft_report(draft, document, figures, lines=lines, command=command)
     deliver(
         document,
         name="init.json",

@@ -145,7 +145,8 @@ def legend_above(
     room = figure.get_figwidth() * figure.dpi
     for columns in range(ncols, 0, -1):
         legend = figure.legend(handles, labels, loc="outside upper left", ncols=columns, **look)
-        if columns == 1 or legend.get_window_extent().width <= room:
+        box = legend.get_window_extent()
+        if columns == 1 or box.x0 + box.x1 <= room:  # as much room on the right as on the left
             return
         legend.remove()
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 import shutil
 import tomllib
 from pathlib import Path
@@ -271,3 +273,14 @@ def test_tests_of_one_file_have_results_of_their_own(here: Path) -> None:
     assert main(["simulate", "ioim-laminar", ".", "-o", "out"]) == 0
     names = {p.name for p in (here / "out").iterdir()}
     assert {"tests.xlsx [Test 1].csv", "tests.xlsx [Test 2].csv"} <= names
+
+
+def test_the_command_on_the_page_makes_the_campaign_again(here: Path) -> None:
+    (here / "lab").mkdir()
+    _csv(here / "lab" / "a.csv", "time [s];displacement [mm];force [kN]", 1.0)
+    assert main(["init", "lab", "-o", "page"]) == 0
+    written = (here / "lab" / "campaign.toml").read_bytes()
+    page = (here / "page" / "report.html").read_text()
+    command = re.findall(r"<pre>(inerter .*)</pre>", page)
+    assert [main(shlex.split(c)[1:]) for c in command] == [0]
+    assert (here / "lab" / "campaign.toml").read_bytes() == written

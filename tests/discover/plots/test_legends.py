@@ -19,7 +19,18 @@ def test_a_legend_has_as_many_columns_as_its_picture_has_room_for(length, column
     places = {round(text.get_window_extent().x0) for text in legend.get_texts()}
     assert len(places) == columns
     if columns > 1:
-        assert legend.get_window_extent().width <= 620
+        assert legend.get_window_extent().x1 <= 620
+
+
+def test_a_legend_that_would_fit_but_for_its_margin_has_a_column_less():
+    names = [*(f"random-{mm}mm-{i}.csv" for mm, i in ((2, 1), (4, 2), (4, 4), (8, 3))), "model"]
+    with house_style():
+        figure = new_figure(620, 300)
+        axes = figure.add_subplot()
+        lines = [axes.plot([0, 1], [0, i])[0] for i in range(5)]
+        legend_above(figure, lines, names, ncols=4, columnspacing=1.2, handletextpad=0.5)
+        figure.draw_without_rendering()
+    assert figure.legends[0].get_window_extent().x1 <= 620
 
 
 def planned(frequency, amplitude):
