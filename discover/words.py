@@ -188,6 +188,19 @@ def zero_possible(ends: Sequence[float | None] | None) -> bool:
     return (low is None or low <= 0.0) and (high is None or high >= 0.0)
 
 
+def in_parts(value: float | None, unit: str) -> tuple[str, float]:
+    """Return the unit that an SI value reads well in, and what to multiply it by.
+
+    Examples
+    --------
+    >>> in_parts(-0.0008, "s"), in_parts(0.0008, "N")
+    (('ms', 1000.0), ('N', 1.0))
+    """
+    if unit not in _PREFIXED or not value:
+        return unit, 1.0
+    return next(((p + unit, f) for most, p, f in _SMALL if abs(value) < most), (unit, 1.0))
+
+
 def quantity(
     value: float, unit: str, ends: Sequence[float | None] | None = None, digits: int = 3
 ) -> str:
@@ -211,10 +224,7 @@ def quantity(
     >>> quantity(0.01, "1")
     '0.01'
     """
-    shown, factor = unit, 1.0
-    if unit in _PREFIXED and value:
-        parts = ((p + unit, f) for limit, p, f in _SMALL if abs(value) < limit)
-        shown, factor = next(parts, (unit, 1.0))
+    shown, factor = in_parts(value, unit)
     text = significant(factor * value, digits)
     if shown not in ("", "1"):
         text += f" {shown}"
