@@ -325,9 +325,8 @@ def _findings(
     best = min(models, key=lambda m: m.rank)
     error = best.relative_percent(held_out=True if _any_held_out(models) else None)
     if error is not None and error < 1.1 * noise:
-        found.append(
-            Finding("note", f"{best.name} predicts to within the noise of the measurement.")
-        )
+        text = f"The best, {best.name}, predicts to within the noise of the measurement."
+        found.append(Finding("note", text))
     return tuple(found)
 
 

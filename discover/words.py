@@ -141,6 +141,9 @@ def probability(value: float | None) -> str:
     return f"< 1{THIN_SPACE}%" if value < 0.005 else f"{100.0 * value:.0f}{THIN_SPACE}%"
 
 
+_MOST_DIGITS = 10
+
+
 def interval(ends: Sequence[float | None] | None, digits: int = 3) -> str:
     """Return an interval in words, None for an end that is open; "" where there is none.
 
@@ -148,6 +151,11 @@ def interval(ends: Sequence[float | None] | None, digits: int = 3) -> str:
     --------
     >>> interval([84.01, 117.3]), interval([84.01, None]), interval([None, None])
     ('84 to 117', 'at least 84', 'undetermined')
+
+    Ends that would look alike have the digits that tell them apart.
+
+    >>> interval([119.97, 120.03]), interval([2.0, 2.0])
+    ('119.97 to 120.03', '2 to 2')
     """
     if not ends:
         return ""
@@ -158,7 +166,12 @@ def interval(ends: Sequence[float | None] | None, digits: int = 3) -> str:
         return f"at most {significant(high, digits)}"
     if high is None:
         return f"at least {significant(low, digits)}"
-    return f"{significant(low, digits)} to {significant(high, digits)}"
+    shown = [(significant(low, n), significant(high, n)) for n in range(digits, _MOST_DIGITS)]
+    first, last = next((s for s in shown if s[0] != s[1]), shown[0])
+    return f"{first} to {last}"
+
+
+_KINDS = {"transient": "from rest", "trajectory": "sweep, random or other"}
 
 
 def zero_possible(ends: Sequence[float | None] | None) -> bool:
@@ -173,6 +186,19 @@ def zero_possible(ends: Sequence[float | None] | None) -> bool:
         return False
     low, high = ends
     return (low is None or low <= 0.0) and (high is None or high >= 0.0)
+
+
+def in_parts(value: float | None, unit: str) -> tuple[str, float]:
+    """Return the unit that an SI value reads well in, and what to multiply it by.
+
+    Examples
+    --------
+    >>> in_parts(-0.0008, "s"), in_parts(0.0008, "N")
+    (('ms', 1000.0), ('N', 1.0))
+    """
+    if unit not in _PREFIXED or not value:
+        return unit, 1.0
+    return next(((p + unit, f) for most, p, f in _SMALL if abs(value) < most), (unit, 1.0))
 
 
 def quantity(
@@ -198,10 +224,7 @@ def quantity(
     >>> quantity(0.01, "1")
     '0.01'
     """
-    shown, factor = unit, 1.0
-    if unit in _PREFIXED and value:
-        parts = ((p + unit, f) for limit, p, f in _SMALL if abs(value) < limit)
-        shown, factor = next(parts, (unit, 1.0))
+    shown, factor = in_parts(value, unit)
     text = significant(factor * value, digits)
     if shown not in ("", "1"):
         text += f" {shown}"
@@ -241,6 +264,17 @@ def model_names(given: Sequence[str]) -> list[str]:
         inside = file == "model.json" and folders
         short.append(folders[-1] if inside else file.removesuffix(".json"))
     return [s if short.count(s) == 1 else g for s, g in zip(short, given, strict=True)]
+
+
+def kind_name(kind: str) -> str:
+    """Return a record's kind in words.
+
+    Examples
+    --------
+    >>> kind_name("sine"), kind_name("trajectory")
+    ('sine', 'sweep, random or other')
+    """
+    return _KINDS.get(kind, kind)
 
 
 def counted(number: int, noun: str) -> str:

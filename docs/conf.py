@@ -18,12 +18,14 @@ extensions = [
     "sphinx.ext.autodoc",
     "mathml",
     "generate",
+    "keys",
 ]
 root_doc = "index"
 exclude_patterns = ["_build"]
 myst_enable_extensions = ["dollarmath", "deflist", "attrs_inline"]
 myst_heading_anchors = 4
 myst_links_external_new_tab = False
+default_role = "py:obj"  # names between single backticks: links where there is a page for them
 nb_execution_mode = "off"  # notebooks are shown as they are kept; `make notebooks` runs them
 nb_ipywidgets_js = {}  # nothing from the network
 numpydoc_show_class_members = False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import typer
@@ -36,7 +37,12 @@ def _paragraphs(text: str | None) -> list[str]:
 
 
 def _plain(text: str) -> str:
-    return text.replace("|", "\\|").replace("<", "&lt;").replace("*", "\\*")
+    """Return text as Markdown, options as code: two hyphens would become a dash."""
+    parts = text.split("`")
+    for i in range(0, len(parts), 2):
+        plain = parts[i].replace("|", "\\|").replace("<", "&lt;").replace("*", "\\*")
+        parts[i] = re.sub(r"(?<![\w-])--[a-z][a-z-]*", r"`\g<0>`", plain)
+    return "`".join(parts)
 
 
 def _entry(parameter: Any, context: Any) -> list[str]:

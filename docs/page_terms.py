@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from io import StringIO
 
 import numpy as np
@@ -67,6 +68,7 @@ def _section(term: Term) -> list[str]:
     lines = [f"({term.id})=", f"## {term.id}", "", " ".join(told), ""]
     described = inspect.getdoc(term.column or term.transform)
     if described:
+        described = re.sub(r"^Return ", "It gives ", described)
         lines += [_paragraphs(described), ""]
     if term.parameters:
         names = ("parameter", "from", "to", "default", "unit", "fitted")

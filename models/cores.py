@@ -55,6 +55,15 @@ CORES = (
 def family_of(ids: Collection[str]) -> str:
     """Return "fractional", "integer" or "mixed" (a fractional term beside inertia or damping).
 
+    Parameters
+    ----------
+    ids : collection of str
+        Of a model's terms.
+
+    Returns
+    -------
+    str
+
     Examples
     --------
     >>> family_of(["fractional-derivative", "coulomb-friction"])
@@ -69,6 +78,16 @@ def family_of(ids: Collection[str]) -> str:
 
 def core_of(ids: Collection[str]) -> str:
     """Return the name of the structure that is made of these terms and what all may have.
+
+    Parameters
+    ----------
+    ids : collection of str
+        Of a model's terms.
+
+    Returns
+    -------
+    str
+        "FOIM", "IOIM-linear", "IOIM-laminar", "IOIM-turbulent" or "other".
 
     Examples
     --------

@@ -48,6 +48,11 @@ def fractional_equivalents(coefficient: float, order: float, omega: ArrayLike) -
     omega : array_like, any shape
         Angular frequency, rad/s, above zero.
 
+    Returns
+    -------
+    Equivalents
+        Inertance, kg, and damping, N s/m, shape of `omega`.
+
     Raises
     ------
     InputError
@@ -88,6 +93,16 @@ def harmonic_equivalents(
     samples : int
         Samples of the cycle; the error falls with their square (friction) or faster.
 
+    Returns
+    -------
+    Equivalents
+        Inertance, kg, and damping, N s/m, shape of `omega`.
+
+    Raises
+    ------
+    InputError
+        For an amplitude or a frequency that is not above zero.
+
     Examples
     --------
     >>> from models.constitutive import foim
@@ -124,6 +139,10 @@ def order_by_phase(equivalents: Equivalents, omega: ArrayLike) -> Array:
         Of any model or device.
     omega : array_like, broadcastable to them
         Angular frequency, rad/s.
+
+    Returns
+    -------
+    array, shape of `omega`
 
     Examples
     --------

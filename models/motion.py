@@ -89,6 +89,18 @@ def harmonic_motion(
     -------
     Motion
         Exact to round-off for every order (the Weyl derivative of each harmonic).
+
+    Raises
+    ------
+    InputError
+        For a frequency that is not above zero, and fewer than two samples a cycle of the highest
+        harmonic.
+
+    Examples
+    --------
+    >>> motion = harmonic_motion([0.0, 0.01], 2.0, samples=8)
+    >>> motion.displacement[:2].round(3).tolist()
+    [0.01, 0.007]
     """
     values = np.atleast_1d(np.asarray(coefficients, dtype=np.complex128))
     number("frequency", frequency, above=0.0)
@@ -118,6 +130,27 @@ def sine_motion(
 ) -> Motion:
     """Return x(t) = A0 sin(2 pi f t), the steady state that the paper's figures use.
 
+    Parameters
+    ----------
+    amplitude : float
+        A0, m.
+    frequency : float
+        f, Hz, above zero.
+    samples : int
+        Samples per cycle.
+    cycles : int
+        Whole cycles.
+
+    Returns
+    -------
+    Motion
+        Of ``samples * cycles`` samples from t = 0.
+
+    Raises
+    ------
+    InputError
+        For a frequency that is not above zero.
+
     Examples
     --------
     >>> float(abs(sine_motion(0.02, 0.5).velocity).max().round(5))
@@ -132,6 +165,34 @@ def sampled_motion(
     """Return the motion of a clean, uniformly sampled displacement.
 
     For noisy records use ``discover.motion_fit``, which chooses the band from the noise.
+
+    Parameters
+    ----------
+    time : array_like, shape (N,)
+        s, in equal steps; three samples or more.
+    displacement : array_like, shape (N,)
+        m.
+    kind : str
+        Operator of the derivatives, as in `models.fractional.derivative`: "caputo",
+        "riemann-liouville", "grunwald-letnikov" (from rest) or "weyl" (periodic).
+
+    Returns
+    -------
+    Motion
+        Velocity and acceleration are derivatives of the displacement by that operator.
+
+    Raises
+    ------
+    InputError
+        Where a value is not finite, or the two differ in shape.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.linspace(0.0, 1.0, 201)
+    >>> motion = sampled_motion(t, 0.5 * t**2)
+    >>> float(motion.velocity[-1].round(3))
+    1.0
     """
     t = finite_array("time", time, ndim=1, min_size=3)
     x = finite_array("displacement", displacement, ndim=1, min_size=3)

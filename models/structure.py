@@ -107,6 +107,21 @@ def oscillator(
         Beside the spring.
     damping : float
         N s/m.
+
+    Returns
+    -------
+    Structure
+        Of one degree of freedom.
+
+    Raises
+    ------
+    InputError
+        For a mass that is not above zero, or a negative stiffness.
+
+    Examples
+    --------
+    >>> oscillator(250.0, 20e3, damping=100.0).size
+    1
     """
     number("mass", mass, above=0.0)
     number("stiffness", stiffness, at_least=0.0)
@@ -133,6 +148,16 @@ def chain(
         N/m and N s/m; no damping where left out.
     devices : sequence of Mount
         Devices between any two masses or to ground.
+
+    Returns
+    -------
+    Structure
+        Of n degrees of freedom.
+
+    Raises
+    ------
+    InputError
+        Where shapes differ, or a device's ends are not there.
 
     Examples
     --------

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from discover.cli import main
+from tests.discover.sample_gap import sample_gap_document
 from tests.discover.sample_study import sample_document
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -67,6 +68,18 @@ def written(tmp_path_factory):
     return {**documents, "model": json.loads(model.read_text(encoding="utf-8"))}
 
 
+def test_names_in_tables_break_after_dots_and_underscores_and_nowhere_else():
+    sys.path.insert(0, str(DOCS))
+    try:
+        from keys import breakable
+    finally:
+        sys.path.remove(str(DOCS))
+    code = '<code><span class="pre">a[].b_c</span></code>'
+    assert breakable(f"<p>{code}</p><td>{code}</td>") == (
+        f"<p>{code}</p><td>{code.replace('.b_', '.<wbr>b_<wbr>')}</td>"
+    )
+
+
 NAMES = (
     "study", "gap", "model", "check", "simulation", "comparison", "design", "reproduction", "init",
     "batch",
@@ -80,5 +93,8 @@ def test_every_key_that_a_verb_writes_is_told(pages, told, written, name):
 
 
 @pytest.mark.slow
-def test_every_key_that_a_study_s_report_reads_is_told(pages, told):
-    assert set(pages.document_keys(sample_document())) - told["study"] == set()
+@pytest.mark.parametrize(
+    ("name", "document"), [("study", sample_document()), ("gap", sample_gap_document())]
+)
+def test_every_key_that_a_report_reads_is_told(pages, told, name, document):
+    assert set(pages.document_keys(document)) - told[name] == set()

@@ -50,7 +50,9 @@ def batch(
     jobs: options.Jobs = 1,
     cluster: options.Cluster = None,
 ) -> int:
-    """Study many campaigns; the same command goes on where an earlier one was stopped.
+    """Study many campaigns: one table and one page.
+
+    The same command goes on where an earlier one was stopped.
 
     Exits 1 where a campaign failed: it is told in one line, and the others are done.
     """

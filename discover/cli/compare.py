@@ -16,6 +16,7 @@ from models.checks import InputError
 if TYPE_CHECKING:
     from discover.compare import Side
     from discover.records import Campaign
+    from models.constitutive import ForceModel, SegmentedModel
 
 
 def compare(
@@ -45,7 +46,11 @@ def compare(
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
 ) -> int:
-    """Put answers side by side: structures, coefficients and whether they differ, errors."""
+    """Put answers side by side, and say where they differ.
+
+    Structures, coefficients with intervals, errors on common records. Writes comparison.json and
+    a page.
+    """
     if len(answers) < 2:
         raise InputError("answers", expected="two or more", found=answers[0], where="compare")
     twice = next((a for a in answers if answers.count(a) > 1), None)
@@ -77,7 +82,8 @@ def compare(
         zip(names, answers, strict=True), key=lambda given: not Path(given[1]).exists()
     ):
         with working(f"Reading {answer}"):
-            side, campaign = _side(name, answer, device, seed=seed, jobs=jobs)
+            records = next(iter(common.values()), None)
+            side, campaign = _side(name, answer, device, records, seed=seed, jobs=jobs)
         found[name] = side
         device = side.model.device if device is None else device
         # A copy of records that are there already would tell the same errors again.
@@ -106,9 +112,13 @@ def compare(
 
 
 def _side(
-    name: str, answer: str, device: Any, *, seed: int, jobs: int
+    name: str, answer: str, device: Any, records: Campaign | None, *, seed: int, jobs: int
 ) -> tuple[Side, Campaign | None]:
-    """Return an answer from what was typed, and the campaign where it was studied for this."""
+    """Return an answer from what was typed, and the campaign where it was studied for this.
+
+    A model whose coefficients have to be fitted first is fitted to `records`.
+    """
+    from discover.cli.gap_answer import FIT, fitted_first, predicting_model
     from discover.compare import side_of_gap, side_of_model, side_of_study
     from discover.named_model import named_model
     from discover.readers import read_campaign
@@ -130,7 +140,23 @@ def _side(
         campaign = read_campaign(path)
         study = run_study(campaign, StudyOptions(seed=seed, jobs=jobs))
         return side_of_study(name, study), campaign
+    if answer.startswith(FIT) and records is None:
+        raise InputError(
+            answer, expected="used with --on CAMPAIGN, which it is fitted to", found="none",
+            where="compare",
+        )  # fmt: skip
+    if records is not None and fitted_first(answer, records.device):
+        fitted = predicting_model(records, answer, seed=seed, jobs=jobs)
+        return side_of_model(name, _banded(fitted)), None
     return side_of_model(name, named_model(answer, device, where=answer)), None
+
+
+def _banded(model: ForceModel | SegmentedModel) -> SegmentedModel:
+    from models.constitutive import Band, ForceModel, SegmentedModel
+
+    if not isinstance(model, ForceModel):
+        return model
+    return SegmentedModel((Band(None, None, model),), "speed")
 
 
 def _document(path: Path) -> dict[str, Any]:

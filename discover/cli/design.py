@@ -22,34 +22,62 @@ def design(
     device: Annotated[
         str,
         typer.Option(
-            "--device", help="To improve on: device-12, device-10, or a campaign with one."
+            "--device",
+            metavar="DEVICE",
+            help="To improve on: device-12, device-10, or a campaign with one.",
         ),
     ] = "device-12",
     amplitude: Annotated[
-        str, typer.Option("--amplitude", help="Displacement amplitude that f_low is judged at.")
+        str,
+        typer.Option(
+            "--amplitude",
+            metavar="QUANTITY",
+            help="Displacement amplitude that f_low is judged at.",
+        ),
     ] = "5 mm",
     frequency: Annotated[
-        str, typer.Option("--frequency", help="Highest working frequency: damping is judged there.")
+        str,
+        typer.Option(
+            "--frequency",
+            metavar="QUANTITY",
+            help="Highest working frequency: damping is judged there.",
+        ),
     ] = "10 Hz",
     inertance: Annotated[
-        str | None, typer.Option("--inertance", help="Wanted, as '300 kg' [default: the device's].")
+        str | None,
+        typer.Option(
+            "--inertance", metavar="QUANTITY", help="Wanted, as '300 kg' [default: the device's]."
+        ),
     ] = None,
     at_least: Annotated[
         bool, typer.Option("--at-least", help="More inertance than wanted is welcome.")
     ] = False,
     damping_ratio: Annotated[
         float,
-        typer.Option("--damping-ratio", min=0.0, help="Largest damping over the device's own."),
+        typer.Option(
+            "--damping-ratio",
+            metavar="NUMBER",
+            min=0.0,
+            help="Largest damping over the device's own.",
+        ),
     ] = 2.0,
     package_radius: Annotated[
-        str | None, typer.Option("--package-radius", help="Outer radius [default: the device's].")
+        str | None,
+        typer.Option(
+            "--package-radius", metavar="QUANTITY", help="Outer radius [default: the device's]."
+        ),
     ] = None,
     package_length: Annotated[
-        str | None, typer.Option("--package-length", help="Height of the helix, likewise.")
+        str | None,
+        typer.Option("--package-length", metavar="QUANTITY", help="Height of the helix, likewise."),
     ] = None,
     pressure: Annotated[
         str | None,
-        typer.Option("--pressure", help="Largest pressure difference over the piston, as '5 MPa'."),
+        typer.Option(
+            "--pressure",
+            metavar="QUANTITY",
+            help="Largest pressure difference over the piston, as '5 MPa'.",
+        ),
     ] = None,
     fluids: Annotated[
         str | None,
@@ -72,7 +100,9 @@ def design(
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
 ) -> int:
-    """Find the geometry and fluid with the lowest critical frequency within bounds.
+    """Find the design with the lowest critical frequency.
+
+    Geometry and fluid, within bounds.
 
     Exits 1 where nothing fits; the result then says which bounds keep every design out.
     """

@@ -34,7 +34,11 @@ def discover(
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
 ) -> int:
-    """Find which structure the records support, in which band, and how surely."""
+    """Find which structure the records support, and where.
+
+    Bands, boundary, Dean check, how surely, and the test that would tell more. Writes study.json,
+    model.json, and a page.
+    """
     one_of("convention", convention, ("paper", "standard"), where="--convention")
     if coordinate is not None:
         one_of("coordinate", coordinate, ("dean", "speed", "frequency"), where="--coordinate")

@@ -55,7 +55,11 @@ def gap(
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
 ) -> int:
-    """Find where a model and the records disagree, name what is missing, and add it."""
+    """Find what a model lacks, name it, and add it.
+
+    Says where model and records disagree, and how far before and after. Writes gap.json, the
+    mended model.json, and a page.
+    """
     one_of("quantity", on, ("force", "motion"), where="--on")
     only = options.identifiers(effects, where="--effects")
     formats = options.figure_formats(figures)

@@ -32,7 +32,10 @@ def init(
         typer.Argument(metavar="FOLDER|FILE...", help="A folder of records, or the records."),
     ],
     title: Annotated[
-        str | None, typer.Option("--title", help="Of the campaign [default: the folder's name].")
+        str | None,
+        typer.Option(
+            "--title", metavar="TEXT", help="Of the campaign [default: the folder's name]."
+        ),
     ] = None,
     column: Annotated[
         list[str] | None,
@@ -50,7 +53,11 @@ def init(
     ] = None,
     sampling_rate: Annotated[
         str | None,
-        typer.Option("--sampling-rate", help="Of files without a time column, as '1 kHz'."),
+        typer.Option(
+            "--sampling-rate",
+            metavar="QUANTITY",
+            help="Of files without a time column, as '1 kHz'.",
+        ),
     ] = None,
     device: Annotated[
         str | None,
@@ -124,7 +131,8 @@ def init(
     with working("Drawing"):
         figures = draft_figures(draft)
         invocation: Invocation = context.obj
-        page = draft_report(draft, document, figures, lines=lines, command=invocation.plain())
+        command = invocation.replacing()
+        page = draft_report(draft, document, figures, lines=lines, command=command)
     deliver(
         document,
         name="init.json",

@@ -17,15 +17,17 @@ class Invocation:
     arguments: tuple[str, ...]
     """As given."""
 
-    def plain(self) -> str:
-        """Return the command as it was typed.
+    def replacing(self) -> str:
+        """Return the command that repeats the work over the file that it wrote.
 
         Examples
         --------
-        >>> Invocation(("init", "my rig")).plain()
-        "inerter init 'my rig'"
+        >>> Invocation(("init", "my rig")).replacing()
+        "inerter init 'my rig' --replace"
         """
-        return shlex.join(["inerter", *self.arguments])
+        typed = self.arguments
+        again = () if "--replace" in typed else ("--replace",)
+        return shlex.join(["inerter", *typed, *again])
 
     def repeat(self, *, seed: int) -> str:
         """Return the command that repeats the work, its seed written out.

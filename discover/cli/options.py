@@ -35,8 +35,8 @@ Out = Annotated[
 AsJson = Annotated[
     bool, typer.Option("--json", help="Print the document on stdout and nothing else there.")
 ]
-Seed = Annotated[int, typer.Option("--seed", min=0, help="Makes a run repeatable.")]
-Jobs = Annotated[int, typer.Option("--jobs", min=1, help="Number of processes.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Makes a run repeatable.")]
+Jobs = Annotated[int, typer.Option("--jobs", metavar="N", min=1, help="Number of processes.")]
 Cluster = Annotated[
     str | None,
     typer.Option(
@@ -64,7 +64,10 @@ Exponents = Annotated[
     typer.Option("--exponents", metavar="GRID", help="Velocity exponents, likewise."),
 ]
 Bands = Annotated[
-    int | None, typer.Option("--bands", min=1, help="Fix the number of bands.", show_default=False)
+    int | None,
+    typer.Option(
+        "--bands", metavar="N", min=1, help="Fix the number of bands.", show_default=False
+    ),
 ]
 Coordinate = Annotated[
     str | None,
@@ -78,7 +81,10 @@ Convention = Annotated[
     str, typer.Option("--convention", metavar="paper|standard", help="Of the Dean number.")
 ]
 Criterion = Annotated[
-    float, typer.Option("--criterion", help="Dean number that the check holds the boundary to.")
+    float,
+    typer.Option(
+        "--criterion", metavar="NUMBER", help="Dean number that the check holds the boundary to."
+    ),
 ]
 FIGURE_FORMATS = ("png", "pdf")
 """Of pictures, beside SVG, which is always written."""

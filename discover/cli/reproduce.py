@@ -17,7 +17,10 @@ def reproduce(
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
 ) -> int:
-    """Recompute the paper: tables, figures, identification, and a verdict on each claim."""
+    """Recompute the paper, with a verdict on each claim.
+
+    Tables, figures and identification, printed beside computed.
+    """
     folder = result_folder("reproduce", "paper", out)
 
     # Loaded here: --help and complaints about options need no numerics.

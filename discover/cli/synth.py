@@ -26,12 +26,16 @@ def synth(
         Path, typer.Argument(metavar="CAMPAIGN-OUT", help="New or empty folder of the campaign.")
     ],
     device: Annotated[
-        str, typer.Option("--device", help="device-12, device-10, or a campaign that has one.")
+        str,
+        typer.Option(
+            "--device", metavar="DEVICE", help="device-12, device-10, or a campaign that has one."
+        ),
     ],
     model: Annotated[
         str | None,
         typer.Option(
             "--model",
+            metavar="M",
             help="Exact records of this model instead of the rig: ioim-laminar, ioim-turbulent,"
             " foim, sfoim, or a model.json.",
         ),
@@ -46,7 +50,10 @@ def synth(
         ),
     ] = None,
     noise: Annotated[
-        str, typer.Option("--noise", help="Force noise, rms over rms force, as 1% or 0.01.")
+        str,
+        typer.Option(
+            "--noise", metavar="SHARE", help="Force noise, rms over rms force, as 1% or 0.01."
+        ),
     ] = "1%",
     frequencies: Annotated[
         str | None,
@@ -60,7 +67,10 @@ def synth(
         str, typer.Option("--amplitudes", metavar="GRID", help="mm, likewise.")
     ] = _AMPLITUDES,
     held_out: Annotated[
-        int, typer.Option("--held-out", min=0, help="How many records are marked as held out.")
+        int,
+        typer.Option(
+            "--held-out", metavar="N", min=0, help="How many records are marked as held out."
+        ),
     ] = 0,
     effect_files: Annotated[
         list[Path] | None,
@@ -71,10 +81,16 @@ def synth(
             " the rig's effects. May be given again.",
         ),
     ] = None,
-    title: Annotated[str | None, typer.Option("--title", help="Of the campaign.")] = None,
+    title: Annotated[
+        str | None, typer.Option("--title", metavar="TEXT", help="Of the campaign.")
+    ] = None,
     seed: options.Seed = options.DEFAULT_SEED,
 ) -> int:
-    """Write a campaign of sine tests from the virtual test rig, or from a model with --model."""
+    """Write a campaign from the virtual test rig.
+
+    Sine tests of a device, with effects hidden in it by --hide; with --model exact records of a
+    model, and noise.
+    """
     if model is not None and hide:
         raise InputError("--hide", expected="used with the rig", found="--model", where="synth")
     if model is None and effect_files:

@@ -83,6 +83,10 @@ def _findings(sides: Sequence[Side], found: Sequence[Difference]) -> list[dict[s
                      " compared.")  # fmt: skip
     if len({s.coordinate for s in sides if len(s.bands) > 1}) > 1:
         notes.append("The bands lie on different coordinates: their ends can't be compared.")
+    untold = any(d.p is None and d.why.endswith("an interval") for d in found)
+    if untold and any(s.kind == "model" for s in sides):
+        notes.append("A model alone has no intervals; a folder of results, with study.json or"
+                     " gap.json in it, has them.")  # fmt: skip
     expected = 0.05 * sum(d.p is not None for d in found)
     if expected >= 1.0:
         notes.append(f"By chance alone about {expected:.0f} of the numbers would be told to"

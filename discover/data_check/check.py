@@ -26,7 +26,7 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
     Parameters
     ----------
     campaign : Campaign
-        As `discover.readers.read_campaign` returns it.
+        As `discover.read_campaign` returns it.
     seed : int
         Kept in the document. Nothing in a check is random.
     jobs : int

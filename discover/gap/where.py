@@ -205,7 +205,9 @@ def where_in_words(found: Sequence[Place]) -> str:
     near = float(weights @ np.array([p.reversal for p in above]) / max(weights.sum(), 1e-300))
     most = f", {100.0 * greatest.share:.0f} % of its energy in {greatest.record}"
     place = f"in {len(above)} of {len(found)} records{most}" if len(found) > 1 else "in the record"
-    follows = f"{100.0 * value:.0f} % of it follows {name}" if value > 0.1 else "it follows nothing"
+    follows = "it follows nothing simple"
+    if value > 0.1:
+        follows = f"{100.0 * value:.0f} % of it follows {name}"
     return (
         f"The misfit stands above the noise {place}; {follows}, and {100.0 * near:.0f} % lies"
         " within 5 % of the stroke around reversal."

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from discover.plots.style import INK, MUTED, house_style, new_figure, prediction_look
+from discover.plots.style import INK, MUTED, house_style, legend_above, new_figure, prediction_look
 from discover.plots.svg import series, to_svg
 
 _ROW = 15.0  # CSS pixels of one answer
@@ -68,7 +68,7 @@ def side_by_side(
             axes.axhline(edge, color="#e3e8ee", linewidth=0.8)
         axes.set_xlabel("From the mean of the answers (%)")
         handles, legend = axes.get_legend_handles_labels()
-        figure.legend(handles, legend, loc="outside upper left", ncols=3)
+        legend_above(figure, handles, legend, ncols=3)
         return to_svg(figure, name="side-by-side", title="Coefficients side by side")
 
 

@@ -10,6 +10,7 @@ from discover.plots.style import (
     INK,
     MODEL,
     house_style,
+    legend_above,
     new_figure,
     plain_log_axis,
 )
@@ -65,6 +66,6 @@ def design_front(document: Mapping[str, Any]) -> str | None:
         axes.set_ylabel("Critical frequency (Hz)")
         plain_log_axis(axes, which="x")
         plain_log_axis(axes, which="y")
-        figure.legend(loc="outside upper left", ncols=5, columnspacing=1.2)
+        legend_above(figure, ncols=5, columnspacing=1.2)
         title = "Trade-off of critical frequency, inertance and damping"
         return to_svg(figure, name="front", title=title)

@@ -10,6 +10,7 @@ from discover.plots.style import (
     INK,
     MUTED,
     house_style,
+    legend_above,
     new_figure,
     plain_log_axis,
     record_marker,
@@ -89,7 +90,7 @@ def _rows(
         axes.spines["left"].set_visible(False)
         plain_log_axis(axes, which="x")
         axes.set_xlabel("‖error‖ / ‖force‖ (%)")
-        figure.legend(loc="outside upper left", ncols=3, columnspacing=1.2, handletextpad=0.4)
+        legend_above(figure, ncols=3, columnspacing=1.2, handletextpad=0.4)
         return to_svg(figure, name=name, title="Relative error of each record and its noise")
 
 

@@ -16,6 +16,7 @@ from discover.plots.style import (
     MODEL,
     MUTED,
     house_style,
+    legend_above,
     new_figure,
     plain_log_axis,
     scaled,
@@ -86,7 +87,7 @@ def gap_by_record(records: Sequence[Mapping[str, Any]]) -> str | None:
         axes.spines["left"].set_visible(False)
         plain_log_axis(axes, which="x")
         axes.set_xlabel("Gap, ‖force − model‖ / ‖force‖ (%)")
-        figure.legend(loc="outside upper left", ncols=3, columnspacing=1.2, handletextpad=0.4)
+        legend_above(figure, ncols=3, columnspacing=1.2, handletextpad=0.4)
         return to_svg(figure, name="gap-records", title="Gap of each record before and after")
 
 
@@ -130,7 +131,7 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
         axes.set_ylabel("Gap (%)")
         plain_log_axis(axes, which="y")
         axes.grid(visible=False, axis="x")
-        figure.legend(loc="outside upper left", ncols=3)
+        legend_above(figure, ncols=3)
         return to_svg(figure, name="gap-rounds", title="The gap from round to round")
 
 
@@ -160,7 +161,7 @@ def effect_shape(shape: EffectShape, *, name: str) -> str:
         look = "-" if shape.joined else "."
         axes.plot(x, scale * shape.force, look, markersize=4.0, color=MODEL, label="the effect")
         axes.set(xlabel=f"{shape.abscissa.capitalize()} ({x_unit})", ylabel=f"Force ({unit})")
-        figure.legend(loc="outside upper left", ncols=3)
+        legend_above(figure, ncols=3)
         return to_svg(figure, name=name, title=f"Shape of {short_name(shape.effect)}")
 
 

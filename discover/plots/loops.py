@@ -12,6 +12,7 @@ from discover.plots.style import (
     MODEL_OVER_MANY,
     graded_colours,
     house_style,
+    legend_above,
     new_figure,
     prediction_look,
     scaled,
@@ -62,7 +63,7 @@ def _loops(record: ShownRecord, name: str) -> str:
             axes.locator_params(axis="x", nbins=3)
             axes.locator_params(axis="y", nbins=5)
         handles, labels = over_time.get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper left", ncols=4)
+        legend_above(figure, handles, labels, ncols=4)
         title = f"Force of {record.file} over time, displacement and velocity, measured and model"
         return to_svg(figure, name=name, title=title)
 
@@ -82,7 +83,7 @@ def _stretches(record: ShownRecord, name: str) -> str:
             axes.locator_params(axis="x", nbins=4)
         panels[0].set_ylabel(f"Force ({unit})")
         handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper left", ncols=4)
+        legend_above(figure, handles, labels, ncols=4)
         title = f"Force of {record.file} in stretches of time, measured and model"
         return to_svg(figure, name=name, title=title)
 

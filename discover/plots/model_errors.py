@@ -11,6 +11,7 @@ from discover.plots.style import (
     INK,
     MUTED,
     house_style,
+    legend_above,
     new_figure,
     plain_log_axis,
     prediction_look,
@@ -62,5 +63,5 @@ def model_errors(models: Sequence[Mapping[str, Any]], *, name: str) -> str | Non
         axes.set_xlabel("‖error‖ / ‖force‖ (%)")
         plain_log_axis(axes, which="x")
         handles, labels = axes.get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper left", ncols=3)
+        legend_above(figure, handles, labels, ncols=3)
         return to_svg(figure, name=name, title="Error of each model on each record")

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.axes import Axes
+from matplotlib.transforms import Bbox
 
 from discover.figure_data import PlanFigureData, PlannedTest
 from discover.plots.plan_axes import DOTTED, dean_line, plan_labels, plan_limits, speed_range
-from discover.plots.style import INK, MUTED, house_style, new_figure
+from discover.plots.style import INK, MUTED, house_style, legend_above, new_figure
 from discover.plots.svg import to_svg
 
 _CLASSES = (
@@ -24,7 +25,8 @@ _UNKNOWN = ("#aab4c0", "noise not known")
 _LEVELS = {"warning": ("o", "#e69f00", "warning"), "error": ("x", "#c02600", "error")}
 _CRITERION = 100.0
 _WIDTH, _HEIGHT = 660, 490
-_ROOM = (0.055, 0.06)  # of the axes: what a number under a mark needs on either side
+_MARK = 6.0  # half a mark's width, CSS pixels
+_ROOM = (6.0, 1.0)  # between a number and what stands beside, above or below it, CSS pixels
 
 
 def plan_map(data: PlanFigureData) -> str | None:
@@ -53,14 +55,13 @@ def plan_map(data: PlanFigureData) -> str | None:
         _criterion_lines(axes, data)
         _points(axes, data.tests)
         _findings(axes, data.tests)
-        _numbers(axes, data.tests)
         plan_labels(axes)
-        figure.legend(
-            loc="outside upper left",
-            ncols=2,
+        legend_above(
+            figure, ncols=2,
             handletextpad=0.4,
             columnspacing=1.4,
         )
+        _numbers(axes, data.tests)
         title = "Map of the planned tests, coloured by the noise of their force"
         return to_svg(figure, name="plan", title=title)
 
@@ -115,20 +116,19 @@ def _findings(axes: Axes, tests: Sequence[PlannedTest]) -> None:
 
 
 def _numbers(axes: Axes, tests: Sequence[PlannedTest]) -> None:
-    """Write the noise under each sine test that has room for it."""
-    places = [_place(axes, t) for t in tests]
+    """Write the noise under each sine test where it touches no other mark or number."""
+    figure = axes.get_figure(root=True)
+    if figure is None:
+        return
+    figure.draw_without_rendering()  # only then is it known where all stands
+    marks = [_mark(axes, t) for t in tests]
+    written: list[Bbox] = []
     for index, test in enumerate(tests):
-        if test.kind != "sine" or test.noise_percent is None:
+        others = [*marks[:index], *marks[index + 1 :]]
+        on_another = any(_touch(marks[index], other) for other in others)
+        if test.kind != "sine" or test.noise_percent is None or on_another:
             continue
-        x, y = places[index]
-        near = (
-            abs(x - u) < _ROOM[0] and abs(y - v) < _ROOM[1]
-            for other, (u, v) in enumerate(places)
-            if other != index
-        )
-        if any(near):
-            continue
-        axes.annotate(
+        number = axes.annotate(
             f"{test.noise_percent:.2g} %",
             (test.frequency, 1e3 * test.amplitude),
             xytext=(0, -9),
@@ -140,13 +140,23 @@ def _numbers(axes: Axes, tests: Sequence[PlannedTest]) -> None:
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.6},
             zorder=3,
         )
+        place = number.get_window_extent()
+        if any(_touch(place, other) for other in (*written, *others)):
+            number.remove()
+        else:
+            written.append(place)
 
 
-def _place(axes: Axes, test: PlannedTest) -> tuple[float, float]:
-    """Return where a test stands on the axes, each coordinate in [0, 1]."""
-    pairs = ((test.frequency, axes.get_xlim()), (1e3 * test.amplitude, axes.get_ylim()))
-    x, y = (math.log(value / low) / math.log(high / low) for value, (low, high) in pairs)
-    return x, y
+def _mark(axes: Axes, test: PlannedTest) -> Bbox:
+    """Return the place of a test's mark in the picture, CSS pixels."""
+    x, y = axes.transData.transform((test.frequency, 1e3 * test.amplitude))
+    return Bbox([[x - _MARK, y - _MARK], [x + _MARK, y + _MARK]])
+
+
+def _touch(one: Bbox, other: Bbox) -> bool:
+    beside, above = _ROOM
+    apart = (one.x0 - other.x1, other.x0 - one.x1, one.y0 - other.y1, other.y0 - one.y1)
+    return bool(max(apart[:2]) < beside and max(apart[2:]) < above)
 
 
 def _criterion_lines(axes: Axes, data: PlanFigureData) -> None:

@@ -11,6 +11,7 @@ from discover.plots.style import (
     MUTED,
     STRUCTURE_COLOURS,
     house_style,
+    legend_above,
     new_figure,
 )
 from discover.plots.svg import to_svg
@@ -77,7 +78,7 @@ def probability_bars(document: Mapping[str, Any], data: StudyFigureData) -> str 
         axes.grid(visible=False, axis="y")
         axes.spines["left"].set_visible(False)
         axes.set_xlabel("Probability of the structure (%)")
-        figure.legend(loc="outside upper left", ncols=4, handlelength=1.0, columnspacing=1.2)
+        legend_above(figure, ncols=4, handlelength=1.0, columnspacing=1.2)
         return to_svg(figure, name="probabilities", title="Probability of each structure by band")
 
 

@@ -17,7 +17,7 @@ from discover.plots.plan_axes import (
     plan_limits,
     speed_range,
 )
-from discover.plots.style import INK, MUTED, house_style, new_figure, record_marker
+from discover.plots.style import INK, MUTED, house_style, legend_above, new_figure, record_marker
 from discover.plots.svg import to_svg
 
 
@@ -56,7 +56,7 @@ def record_map(document: Mapping[str, Any], data: StudyFigureData) -> str | None
             _boundary(axes, boundary, document["coordinate"])
         _points(axes, tests)
         plan_labels(axes)
-        figure.legend(loc="outside upper left", ncols=3, handletextpad=0.4, columnspacing=1.4)
+        legend_above(figure, ncols=3, handletextpad=0.4, columnspacing=1.4)
         return to_svg(figure, name="map", title="Map of the tests, coloured by structure")
 
 

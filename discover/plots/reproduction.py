@@ -12,6 +12,7 @@ from discover.plots.style import (
     MODEL,
     MUTED,
     house_style,
+    legend_above,
     new_figure,
     plain_log_axis,
     scaled,
@@ -53,9 +54,7 @@ def paper_figure(figure: PaperFigure) -> str:
             for one in axes
             for handle, label in zip(*one.get_legend_handles_labels(), strict=True)
         }
-        drawing.legend(
-            list(handles.values()), list(handles), loc="outside upper left", ncols=6
-        )
+        legend_above(drawing, list(handles.values()), list(handles), ncols=6)
         title = f"Figure {figure.number} of the paper, redrawn"
         return to_svg(drawing, name=f"paper-figure-{figure.number}", title=title)
 
@@ -111,7 +110,7 @@ def table_3_figure(rows: tuple[ComparisonRow, ...]) -> str:
         axes.set_xlabel("e_d, fractional against integer-order model (% of the peak)")
         plain_log_axis(axes, which="x")
         axes.grid(visible=False, axis="y")
-        drawing.legend(loc="outside upper left", ncols=3)
+        legend_above(drawing, ncols=3)
         title = "Table 3: printed and recomputed errors with the spread of the printed rounding"
         return to_svg(drawing, name="table-3", title=title)
 
@@ -148,6 +147,6 @@ def order_figure(curve: OrderCurve, points: tuple[OrderPoint, ...]) -> str:
             )
         axes.set(xlabel="Womersley number", ylabel="Order", xlim=(0.1, 300.0), ylim=(0.3, 2.1))
         plain_log_axis(axes, which="x")
-        drawing.legend(loc="outside upper left", ncols=2)
+        legend_above(drawing, ncols=2)
         title = "Order of laminar pipe flow over the Womersley number, and the identified orders"
         return to_svg(drawing, name="orders", title=title)

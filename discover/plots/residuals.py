@@ -13,6 +13,7 @@ from discover.plots.style import (
     MODEL,
     MUTED,
     house_style,
+    legend_above,
     new_figure,
     plain_log_axis,
     prediction_look,
@@ -77,7 +78,7 @@ def residual(record: ShownRecord, *, name: str) -> str | None:
         white.set(xlabel="Lag (ms)", ylabel="Correlation", ylim=(-1.05, 1.05))
         white.locator_params(axis="x", nbins=5)
         handles, labels = spectrum.get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper left", ncols=4, columnspacing=1.2)
+        legend_above(figure, handles, labels, ncols=4, columnspacing=1.2)
         title = f"What is left of {record.file}: spectrum, over the cycle, correlation"
         return to_svg(figure, name=name, title=title)
 
@@ -125,7 +126,7 @@ def over_tests(records: Sequence[ShownRecord], *, name: str) -> str | None:
         lower.set(xlabel="Test, in the campaign's order", ylabel="Gain (%)")
         lower.xaxis.get_major_locator().set_params(integer=True)
         handles, labels = upper.get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper left", ncols=3)
+        legend_above(figure, handles, labels, ncols=3)
         return to_svg(figure, name=name, title="What is left from test to test")
 
 

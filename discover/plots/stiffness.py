@@ -13,6 +13,7 @@ from discover.plots.style import (
     MODEL_OVER_MANY,
     graded_colours,
     house_style,
+    legend_above,
     new_figure,
     plain_log_axis,
     scaled,
@@ -23,6 +24,8 @@ from models.checks import Array
 
 _ALIKE = 1.08  # amplitudes that differ by less are one
 _MOST = 8
+# A test alone at its amplitude has no line through it.
+_MODEL_OF_SINES: dict[str, Any] = {**MODEL_OVER_MANY, "marker": "x", "markersize": 5.0}
 
 
 def stiffness(records: Sequence[ShownRecord], *, name: str) -> str | None:
@@ -49,10 +52,12 @@ def stiffness(records: Sequence[ShownRecord], *, name: str) -> str | None:
         for (label, frequency, measured, model, coherence), colour in zip(
             curves, graded_colours(len(curves)), strict=True
         ):
-            look = _points(colour) if not coherence.size else {"color": colour, "linewidth": 2.2}
+            sine = not coherence.size
+            look = _points(colour) if sine else {"color": colour, "linewidth": 2.2}
+            of_model = _MODEL_OF_SINES if sine else MODEL_OVER_MANY
             for axes, part in ((upper, lambda k: factor * np.abs(k)), (lower, _degrees)):
                 lines = axes.plot(frequency, part(measured), label=label, **look)
-                lines += axes.plot(frequency, part(model), label="_model", **MODEL_OVER_MANY)
+                lines += axes.plot(frequency, part(model), label="_model", **of_model)
                 series(lines, label)
             if coherence.size:
                 series(panels[-1].plot(frequency, coherence, **look), label)
@@ -125,10 +130,11 @@ def _legend(axes: Axes, curves: Sequence[_Curve]) -> None:
     handles, labels = axes.get_legend_handles_labels()
     if len(handles) > _MOST:
         handles, labels = [handles[0], handles[-1]], [labels[0], f"to {labels[-1]}"]
-    (model,) = axes.plot([], [], **MODEL_OVER_MANY)
+    sines = any(not c[4].size for c in curves)
+    (model,) = axes.plot([], [], **(_MODEL_OF_SINES if sines else MODEL_OVER_MANY))
     figure = axes.get_figure(root=True)
     if figure is not None:
-        figure.legend(
-            [*handles, model], [*labels, "model"], loc="outside upper left", ncols=4,
+        legend_above(
+            figure, [*handles, model], [*labels, "model"], ncols=4,
             columnspacing=1.2, handletextpad=0.5,
         )  # fmt: skip

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
@@ -115,6 +116,39 @@ def house_style() -> Iterator[None]:
 def new_figure(width: float, height: float) -> Figure:
     """Return an empty figure of `width` by `height`, CSS pixels at the page's natural size."""
     return Figure(figsize=(width / 96.0, height / 96.0), dpi=96, layout="constrained")
+
+
+def legend_above(
+    figure: Figure,
+    handles: Sequence[Artist] | None = None,
+    labels: Sequence[str] | None = None,
+    *,
+    ncols: int,
+    **look: Any,
+) -> None:
+    """Put a legend above everything, in at most `ncols` columns and no wider than the figure.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        Drawn inside `house_style`.
+    handles, labels : sequence, optional
+        What is named and how; without them all that the figure's axes have.
+    ncols : int
+        As many columns as would look best; fewer where long names need the room.
+    **look
+        As `matplotlib.figure.Figure.legend` takes it.
+    """
+    if handles is None or labels is None:
+        pairs = [axes.get_legend_handles_labels() for axes in figure.axes]
+        handles, labels = [h for p in pairs for h in p[0]], [n for p in pairs for n in p[1]]
+    room = figure.get_figwidth() * figure.dpi
+    for columns in range(ncols, 0, -1):
+        legend = figure.legend(handles, labels, loc="outside upper left", ncols=columns, **look)
+        box = legend.get_window_extent()
+        if columns == 1 or box.x0 + box.x1 <= room:  # as much room on the right as on the left
+            return
+        legend.remove()
 
 
 def prediction_look(label: str, number: int) -> dict[str, Any]:

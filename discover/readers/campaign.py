@@ -67,6 +67,11 @@ def read_campaign(path: str | Path) -> Campaign:
     >>> campaign.records[0].force.shape
     (5000,)
     """
+    if not isinstance(path, str | Path):
+        raise InputError(
+            "path", expected="a folder or a file: Campaign.from_frames takes tables",
+            found=type(path).__name__, where="read_campaign",
+        )  # fmt: skip
     given = Path(path)
     folder = given.parent if given.name == CAMPAIGN_FILE and not given.is_dir() else given
     if given.is_file() and given.suffix.lower() in OPENERS:

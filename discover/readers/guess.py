@@ -130,9 +130,9 @@ def _guess(
     header = source.headers[index]
     reasons = []
     if name:
-        reasons.append("its name is used for it" if name > LETTER else "its letter is used for it")
+        reasons.append("the name says so" if name > LETTER else "the letter is usual")
     if fitting:
-        reasons.append(f"its unit is of {QUANTITIES[quantity]}")
+        reasons.append(f"the unit is one of {QUANTITIES[quantity]}")
     sure = SURE if name == CANONICAL or (name and fitting) else LIKELY
     others = tuple(source.headers[i] for i in near)
     if others:
@@ -242,9 +242,9 @@ def listed(table: TableGuess) -> Iterator[str]:
 
     Examples
     --------
-    >>> force = Guess("force", "F", "likely", "its letter is used for it", "N", unit_stated=False)
+    >>> force = Guess("force", "F", "likely", "the letter is usual", "N", unit_stated=False)
     >>> list(listed(TableGuess({"force": force}, ())))
-    ["force is column 'F' (likely: its letter is used for it), in N (guessed)"]
+    ["force is column 'F' (likely: the letter is usual), in N (guessed)"]
     """
     for guess in table.columns.values():
         stated = "" if guess.unit_stated else " (by its name)" if guess.unit_named else " (guessed)"

@@ -14,7 +14,7 @@ from discover.figure_data import PlanFigureData
 from discover.plots.plan_map import plan_map
 from discover.plots.separation_matrix import nats_text, separation_matrix
 from discover.report.environment import render
-from discover.words import counted, listed, named_line, percent, significant
+from discover.words import counted, kind_name, listed, named_line, percent, significant
 
 
 def check_lines(document: Mapping[str, Any], *, campaign: str) -> list[str]:
@@ -142,7 +142,7 @@ def _records_line(document: Mapping[str, Any]) -> str:
     records = document["records"]
     kinds = Counter(str(r["kind"]) for r in records)
     noise = [r["force_noise_percent"] for r in records if r["force_noise_percent"] is not None]
-    kind_text = listed([f"{n} {kind}" for kind, n in kinds.items()])
+    kind_text = "; ".join(f"{n} {kind_name(kind)}" for kind, n in kinds.items())
     return f"Records: {counted(len(records), 'record')} ({kind_text})" + (
         f"; force noise {_spread(noise)} of the force." if noise else "."
     )

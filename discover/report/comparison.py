@@ -56,8 +56,8 @@ def comparison_lines(document: Mapping[str, Any]) -> list[str]:
         ranked = sorted(entry["models"], key=lambda m: int(m["rank"]))
         misses = listed(f"{m['name']} {percent(_miss(m))}" for m in ranked)
         lines.append(
-            f"Errors: {misses} of the force, on {entry['ranked_on']} of"
-            f" “{entry['campaign']['title']}”; noise {percent(entry['noise_percent'])}."
+            f"Errors: of the force on {entry['ranked_on']} of “{entry['campaign']['title']}”,"
+            f" {misses}; noise {percent(entry['noise_percent'])}."
         )
     lines += [f"Note: {f['text']}" for f in document["findings"]]
     return lines

@@ -12,7 +12,7 @@ from discover.plots.record_view import record_view
 from discover.readers import Draft
 from discover.readers.guess import listed
 from discover.report.environment import render
-from discover.words import counted, named_line
+from discover.words import capitalize_first, counted, named_line
 from models.checks import printable
 
 
@@ -138,7 +138,7 @@ def draft_report(
         document_name="init.json",
         document=document,
         verdict=[named_line(lines[0]), ("Next", f"`{lines[-1].removeprefix('Next: ')}`")],
-        told=list(lines[1:-1]),
+        told=[capitalize_first(line.removeprefix("Columns: ")) for line in lines[1:-1]],
         toml=draft.toml(),
         figures=[Markup(svg) for svg in figures.values()],
     )

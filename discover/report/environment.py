@@ -35,6 +35,20 @@ def unit(text: str) -> Markup:
     return Markup(re.sub(r"\^([-\d.]+)", r"<sup>\1</sup>", plain))
 
 
+def readable(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a term's coefficient, unit and interval, small lengths and times in parts.
+
+    Examples
+    --------
+    >>> readable({"coefficient": 8e-4, "unit": "s", "interval": [7e-4, None]})
+    {'coefficient': 0.8, 'unit': 'ms', 'interval': [0.7, None]}
+    """
+    name, factor = words.in_parts(entry["coefficient"], str(entry["unit"]))
+    scaled = [None if v is None else factor * v
+              for v in (entry["coefficient"], *(entry.get("interval") or ()))]  # fmt: skip
+    return {"coefficient": scaled[0], "unit": name, "interval": scaled[1:] or None}
+
+
 def prose(text: str) -> Markup:
     """Return a sentence as HTML: code between backticks, raised powers, minus signs, percents kept.
 
@@ -96,6 +110,8 @@ def environment() -> jinja2.Environment:
         quantity=words.quantity,
         probability=words.probability,
         interval=words.interval,
+        readable=readable,
+        kind_name=words.kind_name,
         zero_possible=words.zero_possible,
         counted=words.counted,
         band_range=words.band_range,

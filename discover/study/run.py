@@ -40,7 +40,7 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
     Parameters
     ----------
     campaign : Campaign
-        As `discover.readers.read_campaign` returns it.
+        As `discover.read_campaign` returns it.
     options : StudyOptions, optional
         Choices; the defaults leave everything to the data.
 

@@ -48,7 +48,7 @@ def headline(document: Mapping[str, Any]) -> str:
     besides = _besides(bands[0])
     if len(bands) == 1:
         count = len(bands[0]["records"])
-        where = "the one record" if count == 1 else f"all {counted(count, 'record')}"
+        where = _ALL.get(count, f"all {counted(count, 'record')}")
         return f"{names[0]}{besides} in {where}{_dean_short(document)}{_so_far(document)}"
     coordinate = str(document["coordinate"])
     parts = [f"{n} {band_range(b, coordinate)}" for n, b in zip(names, bands, strict=True)]
@@ -81,6 +81,7 @@ def verdict_lines(document: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(line for line in lines if line)
 
 
+_ALL = {1: "the one record", 2: "both records"}
 _NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
 
 

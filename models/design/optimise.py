@@ -53,6 +53,11 @@ def minimise_critical_frequency(
     DesignResult
         Where nothing meets the bounds, `best` is None and `conflicts` says why.
 
+    Raises
+    ------
+    InputError
+        Without a fluid, or for a duty or bounds that are out of range.
+
     Notes
     -----
     The two Dean conventions differ by the factor 2 sqrt(2), so one design is best by both.

@@ -102,6 +102,16 @@ def elasticities(device: Device) -> dict[str, float]:
 
     Negative: enlarging the dimension lowers the critical frequency.
 
+    Parameters
+    ----------
+    device : Device
+        Geometry and fluid.
+
+    Returns
+    -------
+    dict of str to float
+        By name of the dimension.
+
     Examples
     --------
     >>> {k: round(v, 2) for k, v in elasticities(Device.preset("device-12")).items()}

@@ -166,6 +166,18 @@ class DesignBounds:
 def parasitic_damping(device: Device, duty: Duty) -> float:
     """Return c2 + 8/(3 pi) c1 V of Eq. 5, N s/m: equal energy lost in a cycle at peak speed V.
 
+    Parameters
+    ----------
+    device : Device
+        Geometry and fluid.
+    duty : Duty
+        The motion.
+
+    Returns
+    -------
+    float
+        N s/m.
+
     Examples
     --------
     >>> round(parasitic_damping(Device.preset("device-12"), Duty(frequency=12.0)))
@@ -177,6 +189,18 @@ def parasitic_damping(device: Device, duty: Duty) -> float:
 
 def peak_pressure(device: Device, duty: Duty) -> float:
     """Return the pressure difference over the piston, Pa, at most (inertia and loss added).
+
+    Parameters
+    ----------
+    device : Device
+        Geometry and fluid.
+    duty : Duty
+        The motion.
+
+    Returns
+    -------
+    float
+        Pa.
 
     Examples
     --------

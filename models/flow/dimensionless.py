@@ -39,6 +39,28 @@ def dean_per_speed(device: Device, *, convention: str = "paper") -> float:
     """Return De/v, s/m: Dean number of the channel for one metre a second of the piston.
 
     Eq. 14, De = Re sqrt(2 r3/r4), with the paper's Re; or the standard Re sqrt(r3/r4).
+
+    Parameters
+    ----------
+    device : Device
+        Geometry and fluid.
+    convention : str
+        "paper" or "standard".
+
+    Returns
+    -------
+    float
+        s/m.
+
+    Raises
+    ------
+    InputError
+        For an unknown convention.
+
+    Examples
+    --------
+    >>> round(dean_per_speed(Device.preset("device-12")))
+    4797
     """
     ratio = device.curvature_ratio
     factor = math.sqrt(2.0 * ratio) if convention == "paper" else math.sqrt(ratio)
@@ -61,6 +83,11 @@ def reynolds(device: Device, speed: ArrayLike, *, convention: str = "paper") -> 
     -------
     array, shape of `speed`
 
+    Raises
+    ------
+    InputError
+        For an unknown convention.
+
     Examples
     --------
     >>> float(reynolds(Device.preset("device-12"), -0.1, convention="standard").round(1))
@@ -72,6 +99,24 @@ def reynolds(device: Device, speed: ArrayLike, *, convention: str = "paper") -> 
 
 def dean(device: Device, speed: ArrayLike, *, convention: str = "paper") -> Array:
     """Return the channel's Dean number (Eq. 14) at a piston speed; see `reynolds`.
+
+    Parameters
+    ----------
+    device : Device
+        Geometry and fluid.
+    speed : array_like, any shape
+        Piston speed, m/s; its sign is dropped.
+    convention : str
+        "paper" or "standard".
+
+    Returns
+    -------
+    array, shape of `speed`
+
+    Raises
+    ------
+    InputError
+        For an unknown convention.
 
     Examples
     --------
@@ -87,6 +132,25 @@ def dean(device: Device, speed: ArrayLike, *, convention: str = "paper") -> Arra
 
 def critical_speed(device: Device, *, dean: float = 100.0, convention: str = "paper") -> float:
     """Return the piston speed at which the channel reaches a Dean number, m/s.
+
+    Parameters
+    ----------
+    device : Device
+        Geometry and fluid.
+    dean : float
+        Above zero.
+    convention : str
+        "paper" or "standard".
+
+    Returns
+    -------
+    float
+        m/s.
+
+    Raises
+    ------
+    InputError
+        For a Dean number that is not above zero, and an unknown convention.
 
     Examples
     --------

@@ -59,6 +59,15 @@ def transition_reynolds(curvature: float, *, method: str = "schmidt") -> float:
     method : str
         Whose correlation: one of `TRANSITION`. They differ widely (5,600 to 8,300 for one coil).
 
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InputError
+        For a curvature out of range, and an unknown method.
+
     Examples
     --------
     >>> round(transition_reynolds(0.05))
@@ -100,6 +109,11 @@ def friction_times_reynolds(
     Returns
     -------
     array, shape of `reynolds`
+
+    Raises
+    ------
+    InputError
+        For a curvature or width out of range, and an unknown correlation.
 
     Examples
     --------
@@ -159,6 +173,11 @@ def channel_force(
     Returns
     -------
     array, shape of `speed`
+
+    Raises
+    ------
+    InputError
+        As `friction_times_reynolds`.
 
     Examples
     --------

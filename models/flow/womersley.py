@@ -41,6 +41,10 @@ def womersley_number(device: Device, frequency: ArrayLike) -> Array:
     frequency : array_like, any shape
         Frequency, Hz; its sign is dropped.
 
+    Returns
+    -------
+    array, shape of `frequency`
+
     Examples
     --------
     >>> float(womersley_number(Device.preset("device-12"), 1.0).round(3))
@@ -95,6 +99,11 @@ def normalised_impedance(womersley: ArrayLike, *, part: str = "total") -> Comple
     -------
     complex array, shape of `womersley`
 
+    Raises
+    ------
+    InputError
+        For a Womersley number below zero, and an unknown part.
+
     Notes
     -----
     Low Wo: 8 + 4/3 i Wo^2. High Wo: i Wo^2 + 2 sqrt(i) Wo.
@@ -134,6 +143,11 @@ def effective_order(womersley: ArrayLike, *, by: str = "phase", part: str = "tot
     Returns
     -------
     array, shape of `womersley`
+
+    Raises
+    ------
+    InputError
+        For a Womersley number below zero, an unknown `by`, and an unknown part.
 
     Examples
     --------
@@ -177,6 +191,15 @@ def channel_impedance(device: Device, omega: ArrayLike, *, part: str = "total") 
     part : str
         As in `normalised_impedance`.
 
+    Returns
+    -------
+    complex array, shape of `omega`
+
+    Raises
+    ------
+    InputError
+        For an unknown part.
+
     Examples
     --------
     >>> device = Device.preset("device-12")
@@ -192,6 +215,17 @@ def channel_impedance(device: Device, omega: ArrayLike, *, part: str = "total") 
 
 def excess_impedance(device: Device, omega: ArrayLike) -> ComplexArray:
     """Return `channel_impedance` less its steady Poiseuille resistance, N s/m.
+
+    Parameters
+    ----------
+    device : Device
+        Geometry and fluid.
+    omega : array_like, any shape
+        Angular frequency, rad/s.
+
+    Returns
+    -------
+    complex array, shape of `omega`
 
     Examples
     --------
@@ -232,6 +266,16 @@ def wall_modes(device: Device, *, count: int = 32) -> WallModes:
         Geometry and fluid.
     count : int
         Number of modes kept; the next ones act as inertance.
+
+    Returns
+    -------
+    WallModes
+        Rates (1/s) and sizes, in rising rate.
+
+    Raises
+    ------
+    InputError
+        For a count below one.
 
     Examples
     --------

@@ -27,6 +27,15 @@ _CLOSEST = 1e-9
 def unstable_exponents(state: SteadyState) -> int:
     """Return the number of growing exponents; zero for a stable state.
 
+    Parameters
+    ----------
+    state : SteadyState
+        From `steady_state` or a point of a branch.
+
+    Returns
+    -------
+    int
+
     Examples
     --------
     >>> from models.harmonic_balance import SineDrive, steady_state

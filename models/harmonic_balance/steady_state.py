@@ -110,6 +110,11 @@ def steady_state(
     guess : SteadyState, optional
         Start of Newton's method, with as many harmonics; the linear response where left out.
 
+    Returns
+    -------
+    SteadyState
+        Harmonics of every displacement, m.
+
     Raises
     ------
     InputError

@@ -21,6 +21,16 @@ def linear_terms(model: Model) -> tuple[tuple[float, float], ...]:
     Friction and nonlinear damping have no place here: linearise them first, as with
     ``models.equivalents.harmonic_equivalents``; they are passed over.
 
+    Parameters
+    ----------
+    model : ForceModel or SegmentedModel
+        Of one band.
+
+    Returns
+    -------
+    tuple of (float, float)
+        Coefficients in N s^order/m, and orders.
+
     Raises
     ------
     InputError
@@ -74,6 +84,22 @@ def dynamic_stiffness(structure: Structure, s: ArrayLike) -> Complex:
         Devices of one band each.
     s : array_like of complex, shape (...)
         rad/s; i omega for a steady state.
+
+    Returns
+    -------
+    complex array, shape (..., n, n)
+        N/m.
+
+    Raises
+    ------
+    InputError
+        For a segmented device.
+
+    Examples
+    --------
+    >>> from models.structure import oscillator
+    >>> dynamic_stiffness(oscillator(1.0, 4.0), 1j).real.tolist()
+    [[3.0]]
     """
     points = np.asarray(s, dtype=np.complex128)
     total = np.zeros((*points.shape, structure.size, structure.size), dtype=np.complex128)
@@ -110,6 +136,11 @@ def transfer_function(
     -------
     ndarray of complex, shape (...)
         m/N and so on; under base motion m/(m/s^2) and so on.
+
+    Raises
+    ------
+    InputError
+        For an unknown load or quantity, and a degree of freedom that is not there.
 
     Examples
     --------

@@ -89,6 +89,23 @@ def eigenvalues(structure: Structure, *, method: Method = "auto") -> Complex:
 def modes(structure: Structure, *, method: Method = "auto") -> Modes:
     """Return eigenvalues of the upper half plane with frequencies, damping ratios and shapes.
 
+    Parameters
+    ----------
+    structure : Structure
+        Devices of one band each; friction and nonlinear damping are passed over.
+    method : str
+        As in `eigenvalues`.
+
+    Returns
+    -------
+    Modes
+        By rising damped frequency.
+
+    Raises
+    ------
+    InputError
+        As `eigenvalues`.
+
     Examples
     --------
     >>> from models.structure import oscillator

@@ -102,6 +102,11 @@ def oustaloup(
     refined : bool, optional
         Xue's correction at the ends, one more pair of poles and zeros.
 
+    Returns
+    -------
+    RationalPower
+        Gain, zeros and poles, rad/s, with its error in the band.
+
     Raises
     ------
     InputError

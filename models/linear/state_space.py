@@ -65,6 +65,16 @@ def rational_structure(
     pairs, margin, refined
         As in `oustaloup`.
 
+    Returns
+    -------
+    RationalStructure
+        Matrices of the state equations, SI.
+
+    Raises
+    ------
+    InputError
+        As `oustaloup` and `transfer_function`.
+
     Examples
     --------
     >>> from models.constitutive import FittedTerm, ForceModel

@@ -142,6 +142,19 @@ class Plan:
 def sine_point(frequency: float, amplitude: float, *, held_out: bool = False) -> TestPoint:
     """Return a sine test with usual numbers of cycles and samples.
 
+    Parameters
+    ----------
+    frequency : float
+        Hz.
+    amplitude : float
+        m.
+    held_out : bool
+        Never fitted, only predicted.
+
+    Returns
+    -------
+    TestPoint
+
     Examples
     --------
     >>> sine_point(0.1, 0.005).cycles, sine_point(15.0, 0.005).sampling

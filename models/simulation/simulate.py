@@ -60,6 +60,11 @@ def simulate(
     kernel_error : float
         Relative error of the fractional memory's kernel.
 
+    Returns
+    -------
+    Response
+        Displacement, velocity, acceleration (n, N) and the devices' forces, SI.
+
     Raises
     ------
     InputError

@@ -29,6 +29,22 @@ CATALOGUE = tuple(sorted(TERMS))
 def find_term(identifier: str, *, where: str = "") -> Term:
     """Return the term called `identifier`, or raise `InputError` that lists all.
 
+    Parameters
+    ----------
+    identifier : str
+        Id in the vocabulary.
+    where : str
+        What an error names as the place.
+
+    Returns
+    -------
+    Term
+
+    Raises
+    ------
+    InputError
+        For an id that is not there; the line lists all.
+
     Examples
     --------
     >>> find_term("inertia").unit

@@ -70,12 +70,13 @@ def sample_gap_data():
 def sample_gap_document():
     data = sample_gap_data()
     term = {"id": "inertia", "coefficient": 371.0, "unit": "kg", "interval": [369.0, 373.0]}
+    told = {k: v for k, v in term.items() if k != "interval"}
     return {
         "schema": "inerter.gap/1",
         "version": "0.1.0",
         "seed": 0,
         "campaign": {"title": "Device [12], friction hidden", "hash": "cd" * 32},
-        "baseline": {"terms": [term], "fitted": True},
+        "baseline": {"terms": [told], "fitted": True},
         "gap_percent": 18.3,
         "noise_percent": 1.1,
         "held_out_gap_percent": 21.0,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 import shutil
 import tomllib
 from pathlib import Path
@@ -251,7 +253,7 @@ def test_check_takes_one_file(here: Path, capsys: pytest.CaptureFixture[str]) ->
     _csv(here / "a.csv", "Zeit [s];Weg [mm];Kraft", 2.0)
     assert main(["check", "a.csv"]) == 0
     out = capsys.readouterr().out
-    assert "force is column 'Kraft' (likely: its name is used for it), in N (guessed)" in out
+    assert "force is column 'Kraft' (likely: the name says so), in N (guessed)" in out
     assert "the unit of force is a guess, 'N': no file states it" in out
     _csv(here / "b.csv", "time [s];displacement [mm];force [kN]", 2.0)
     assert read_campaign(here / "b.csv").findings == ()
@@ -297,3 +299,14 @@ def test_tests_of_one_file_have_results_of_their_own(here: Path) -> None:
     assert main(["simulate", "ioim-laminar", ".", "-o", "out"]) == 0
     names = {p.name for p in (here / "out").iterdir()}
     assert {"tests.xlsx [Test 1].csv", "tests.xlsx [Test 2].csv"} <= names
+
+
+def test_the_command_on_the_page_makes_the_campaign_again(here: Path) -> None:
+    (here / "lab").mkdir()
+    _csv(here / "lab" / "a.csv", "time [s];displacement [mm];force [kN]", 1.0)
+    assert main(["init", "lab", "-o", "page"]) == 0
+    written = (here / "lab" / "campaign.toml").read_bytes()
+    page = (here / "page" / "report.html").read_text()
+    command = re.findall(r"<pre>(inerter .*)</pre>", page)
+    assert [main(shlex.split(c)[1:]) for c in command] == [0]
+    assert (here / "lab" / "campaign.toml").read_bytes() == written

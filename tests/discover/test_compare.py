@@ -1,4 +1,5 @@
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -88,6 +89,7 @@ def test_models_alone_have_no_intervals_and_still_a_page():
     files = comparison_files(document, command="inerter compare a b")
     assert "none has an interval" in files["report.html"]
     assert files["coefficients.csv"].count("inertia") == 2
+    assert any("folder of results" in f["text"] for f in document["findings"])
 
 
 @pytest.fixture(scope="module")
@@ -114,7 +116,7 @@ def test_the_model_that_made_records_is_best_on_them_and_pictures_come_in_each_f
     assert ranks == {"ioim-laminar": 1, "ioim-turbulent": 2}
     assert (folder / "figures" / "errors-1.png").read_bytes()[1:4] == b"PNG"
     assert (folder / "figures" / "errors-1.pdf").read_bytes()[:4] == b"%PDF"
-    assert "Errors: ioim-laminar " in capsys.readouterr().out
+    assert re.search(r"Errors: of the force on .+”, ioim-laminar ", capsys.readouterr().out)
 
 
 def test_simulate_has_a_page_beside_its_tables(campaign, tmp_path, monkeypatch):
@@ -154,3 +156,48 @@ def test_what_one_answer_alone_has_is_told_as_that_and_not_as_undecided(
     (laminar,) = [line for line in lines if line.startswith("Only in ioim-laminar: ")]
     assert "inertance" in laminar and "quadratic damping" in laminar
     assert not any("fractional" in line for line in lines if line.startswith("Can't be told"))
+
+
+def test_simulate_fits_terms_first_where_it_is_asked_to(campaign, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    models = ["ioim-laminar", "fit:inertia,stiffness"]
+    assert main(["simulate", *models, str(campaign), "-o", "out", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    ranks = {m["name"]: m["rank"] for m in document["models"]}
+    assert ranks == {"ioim-laminar": 1, "fit:inertia,stiffness": 2}
+    assert any(f["text"].endswith("not held out: fit:inertia,stiffness.")
+               for f in document["findings"])  # fmt: skip
+
+
+def test_simulate_finds_fitted_terms_as_good_as_those_that_made_the_records(
+    campaign, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    terms = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
+    assert main(["simulate", "ioim-laminar", terms, str(campaign), "-o", "out", "--json"]) == 0
+    made, fitted = json.loads(capsys.readouterr().out)["models"]
+    assert fitted["relative_error_percent"] < 1.05 * made["relative_error_percent"]
+
+
+def test_simulate_says_where_a_name_needs_a_device(campaign, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (file,) = list(campaign.glob("*2hz*.csv"))[:1]
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "a.csv").write_text(file.read_text())
+    (tmp_path / "own" / "campaign.toml").write_text('[[records]]\nfile = "a.csv"\n')
+    assert main(["simulate", "foim", "own"]) == 2
+    assert "simulate: foim must be used with a device" in capsys.readouterr().err
+
+
+def test_compare_fits_terms_to_the_records_that_it_is_given(
+    campaign, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    terms = "fit:inertia,viscous-damping,quadratic-damping,coulomb-friction"
+    assert main(["compare", terms, "ioim-laminar", "--on", str(campaign), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    (inertance,) = [q for q in document["quantities"] if q["term"] == "inertia"]
+    fitted, made = (v["value"] for v in inertance["values"])
+    assert fitted == pytest.approx(made, rel=0.01)
+    assert main(["compare", terms, "ioim-laminar"]) == 2
+    assert "with --on CAMPAIGN, which it is fitted to" in capsys.readouterr().err

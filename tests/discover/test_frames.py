@@ -162,3 +162,10 @@ def test_a_record_takes_series_and_lists_and_leaves_them_alone():
     assert not again.force.flags.writeable
     with pytest.raises(InputError, match="a: force must be numeric, got Series"):
         discover.Record("a", TIME, pd.Series(["x"] * 2000))
+
+
+@pytest.mark.parametrize("given", [pd.Series([1.0]), pd.DataFrame({"time": [0.0]}), 3])
+def test_reading_what_is_no_path_says_what_takes_tables(given):
+    message = f"path must be .*from_frames takes tables.*got {type(given).__name__}"
+    with pytest.raises(InputError, match=message):
+        discover.read_campaign(given)

@@ -204,6 +204,12 @@ def test_further_keys_of_a_document_are_passed_over():
     assert term.unit == "N s^1.5/m"
 
 
+@pytest.mark.parametrize(("power", "unit"), [(0.0, "N"), (1.0, "N/m"), (2.0, "N/m^2")])
+def test_a_unit_to_no_power_is_left_out(power, unit):
+    term = FittedTerm("position-dependent-friction", 1.0, {"power": power})
+    assert term.unit == unit
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [

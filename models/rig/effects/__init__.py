@@ -28,6 +28,17 @@ CATALOGUE: tuple[str, ...] = tuple(key for key in FORMS if key not in OUTSIDE)
 def find_effect(name: str, *, where: str = "hidden effect") -> Effect:
     """Return the effect called "id" (its default form) or "id:form".
 
+    Parameters
+    ----------
+    name : str
+        Id, or id and form.
+    where : str
+        What an error names as the place.
+
+    Returns
+    -------
+    Effect
+
     Raises
     ------
     InputError
