@@ -107,8 +107,8 @@ def structure_name(band: Mapping[str, Any]) -> str:
         return "none of the structures"
     if name == OTHER:
         return f"other ({listed(_names(band['terms']))})"
-    orders = [t["order"] for t in band["terms"] if t.get("order") is not None]
-    return f"{name} of order {listed(significant(round(o, 4), 3) for o in orders)}" if orders else name
+    orders = [round(t["order"], 4) for t in band["terms"] if t.get("order") is not None]
+    return f"{name} of order {listed(significant(o, 3) for o in orders)}" if orders else name
 
 
 def _besides(band: Mapping[str, Any]) -> str:
