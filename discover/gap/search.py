@@ -158,7 +158,7 @@ def search(
         added = last.best
         if not added.id or added.assessed is None:
             break
-        after, dropped = _without_superfluous(baseline, rounds, added)
+        after, dropped = _without_superfluous(baseline, rounds, here, added)
         effect = added.id
         rounds.append(Round(effect, last, here, after, dropped))
         here = after
@@ -187,21 +187,24 @@ def _accepted(baseline: Baseline, here: Stage, step: Step) -> tuple[Step, tuple[
         if not candidate.id or candidate.assessed is None:
             break
         if candidate.left is None or alone is None or is_less(candidate.left, alone):
-            was, now = here.unseen_gap, stage(baseline, candidate.assessed).unseen_gap
-            if was is None or now is None or now < was:
+            if not _is_worse(here, stage(baseline, candidate.assessed)):
                 break
         refused.append(candidate.id)
     return step.without(refused), tuple(refused)
 
 
 def _without_superfluous(
-    baseline: Baseline, rounds: Sequence[Round], added: Candidate
+    baseline: Baseline, rounds: Sequence[Round], here: Stage, added: Candidate
 ) -> tuple[Stage, tuple[str, ...]]:
-    """Return the stage with a candidate, without effects of earlier rounds that it replaces."""
+    """Return the stage with a candidate, without effects of earlier rounds that it replaces.
+
+    One that replaces them predicts what is not fitted no worse than they did.
+    """
     if added.assessed is None:
         raise ValueError("a candidate that is added is fitted")
-    assessed, dropped = added.assessed, list[str]()
+    there, dropped = stage(baseline, added.assessed), list[str]()
     for name in dict.fromkeys(r.effect for r in rounds if r.effect != added.id):
+        assessed = there.assessed
         places = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == name]
         if not places:
             continue
@@ -209,10 +212,19 @@ def _without_superfluous(
         for place in reversed(places):
             less = less.without(place)
         without = baseline.assessor.assess(less, assessed.place)
-        if not is_needed(without, assessed):
-            assessed = without
+        if is_needed(without, assessed):
+            continue
+        after = stage(baseline, without)
+        if not _is_worse(here, after):
+            there = after
             dropped.append(name)
-    return stage(baseline, assessed), tuple(dropped)
+    return there, tuple(dropped)
+
+
+def _is_worse(was: Stage, now: Stage) -> bool:
+    """Tell whether what is not fitted is predicted worse; False where nothing is left out."""
+    before, after = was.unseen_gap, now.unseen_gap
+    return before is not None and after is not None and after >= before
 
 
 def mean_square(accuracies: Sequence[Accuracy]) -> float:

@@ -104,11 +104,6 @@ class Assessor:
         return len(self.space.sheet.units) > 1
 
     @cached_property
-    def curve(self) -> Part | None:
-        """Departures of friction's curve."""
-        return None if self.friction is None else departures(self.friction, named=self.named)
-
-    @cached_property
     def coarse(self) -> Evaluator:
         """Evaluator of what may join a model, where a quarter of a cycle's points is enough."""
         return Evaluator(self.space.sheet, self.space.scales, coarse=True)
@@ -159,11 +154,17 @@ class Assessor:
         return behind(self.space, self.friction, changed)
 
     def curve_of(self, model: Composite) -> Part | None:
-        """Return the departures of friction's curve where a model has that friction."""
-        if self.curve is None or not self.curve.terms:
+        """Return the departures of friction's curve where a model has that friction.
+
+        Curves that have a name among effects are open to models that hold such an effect.
+        """
+        if self.friction is None:
             return None
-        name = self.curve.id
-        return self.curve if any(t.fitted.id == name for t in model.terms) else None
+        held = {t.fitted.id: t.fitted for t in model.terms}
+        if held.pop(self.friction.id, None) is None:
+            return None
+        curve = departures(self.friction, None if self.named else tuple(held.values()))
+        return curve if curve.terms else None
 
 
 def _at(

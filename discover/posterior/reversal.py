@@ -114,7 +114,7 @@ def reversal_of(
     departed = np.searchsorted(curve.columns, own.columns)
     total = main.coefficient * plain
     total = total + np.einsum("k,ukr->ur", departing, whole[:, departed] - whole[:, :1])
-    some = [k for k, t in enumerate(curve.terms) if t.id == curve.id or k in departed]
+    some = [0, *departed]
     terms = _few(whole[:, some], total, [curve.terms[k] for k in some])
     without = left + main.coefficient * plain
     sizes = assessed.place.sizes(space.own_unit)

@@ -137,23 +137,33 @@ def differing(blocks: Sequence[Array]) -> list[Array]:
     return [np.concatenate([b[:1], b[1:] - b[:1]]) for b in blocks]
 
 
-def _has_name(curve: FittedTerm, identifier: str) -> bool:
-    """Tell whether a curve of a term has a name among effects: another's, or of what remembers."""
-    return curve.id != identifier or curve.term.remembers(curve.shape) == "path"
+def _is_open(curve: FittedTerm, identifier: str, held: Sequence[FittedTerm]) -> bool:
+    """Tell whether a curve of a term has no name among effects, or that of one which is held.
+
+    It has the name of another term's curve, or of what remembers the path.
+    """
+    remembers = curve.term.remembers(curve.shape) == "path"
+    if curve.id == identifier and not remembers:
+        return True
+    return any(
+        t.term.remembers(t.shape) == "path" if remembers else t.id == curve.id for t in held
+    )
 
 
-def departures(part: Part, *, named: bool) -> Part:
+def departures(part: Part, held: Sequence[FittedTerm] | None) -> Part:
     """Return how a term's curves differ from the plainest, without that.
 
     Parameters
     ----------
     part : Part
         From `curve_part`.
-    named : bool
-        Whether curves count that have a name among effects.
+    held : sequence of FittedTerm, optional
+        What a model holds besides: of curves that have a name among effects only those of these
+        count. All curves without it.
     """
     kept = [
-        k for k, t in enumerate(part.terms) if k > 0 and (named or not _has_name(t, part.id))
+        k for k, t in enumerate(part.terms)
+        if k > 0 and (held is None or _is_open(t, part.id, held))
     ]
     return Part(
         tuple(part.terms[k] for k in kept), part.columns[kept], part.spread[kept],

@@ -94,7 +94,7 @@ def test_products_within_units_leave_what_units_share_of_the_remainder_aside(pro
 
 def test_a_curve_that_is_marginalised_is_a_part_of_the_covariance(problem):
     space, curve, at = problem
-    part = departures(curve, named=True)
+    part = departures(curve, None)
     sizes = SIZES["all"]
     columns = np.concatenate([space.columns[:, at], space.sheet.target[:, None]], axis=1)
     bank = flat(space.columns[:, part.columns])
@@ -112,7 +112,7 @@ def test_a_curve_that_is_marginalised_is_a_part_of_the_covariance(problem):
 
 def test_the_curve_s_coefficients_are_those_of_a_ridge(problem):
     space, curve, _ = problem
-    part, sizes = departures(curve, named=False), SIZES["loud"]
+    part, sizes = departures(curve, ()), SIZES["loud"]
     left = space.sheet.target
     mean, covariance = curve_given(space, sizes, left, part, part.scales[0])
     bank = flat(space.columns[:, part.columns])
