@@ -10,6 +10,7 @@ from scipy.special import gammaincinv
 
 from discover.motion_fit.band_noise import band_noise
 from discover.motion_fit.noise import power_density
+from discover.motion_fit.noise_spectrum import NoiseSpectrum
 from discover.motion_fit.observation import Lines, Observation, Window
 from discover.records import Record
 from models.checks import Array, InputError
@@ -143,6 +144,42 @@ def _projection(inside: slice, taper: Array, count: int) -> Callable[[Array], Li
     return project
 
 
+def _window(
+    piece: tuple[int, Array],
+    motion: Motion,
+    x: Array,
+    force: Array,
+    noise: NoiseSpectrum,
+    *,
+    step: float,
+    cutoff: float,
+    mass: float,
+) -> Window:
+    """Return the lines of one piece, its start and taper; `mass` is that of all squared tapers."""
+    start, taper = piece
+    size = taper.size
+    inside = slice(start, start + size)
+    count = int(np.floor(cutoff * size * step)) + 1
+    project = _projection(inside, taper, count)
+    frequencies = np.arange(count, dtype=np.float64) / (size * step)
+    density = noise.at(np.maximum(frequencies, frequencies[1]))
+    mean_power = float(np.mean(force**2))
+    variance = np.maximum(density / (2.0 * size * step), RELATIVE_FLOOR**2 * mean_power)
+    v_rms, x_rms = float(np.std(motion.velocity[inside])), float(np.std(x[inside]))
+    return Window(
+        omega=2.0 * np.pi * frequencies,
+        force=project(force),
+        variance=variance,
+        project=project,
+        frequency=v_rms / (2.0 * np.pi * x_rms) if x_rms else 0.0,
+        amplitude=float(np.sqrt(2.0) * x_rms),
+        speed=float(np.sqrt(2.0) * v_rms),
+        rest=0.0,
+        noise_power=float(2.0 * np.sum(variance)),
+        share=float(np.sum(taper**2)) / mass,
+    )
+
+
 def observe_band(record: Record, usable: slice, kind: str) -> Observation:
     """Return the observation of a sweep, a random record, an earthquake or a trajectory.
 
@@ -175,33 +212,11 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         found = band_noise(motion, force, step, cutoff, inner)
         follows = found.follows
     noise = found.spectrum
-    velocity = motion.velocity
     mass = sum(float(np.sum(taper**2)) for _, taper in pieces)
-    mean_power = float(np.mean(force**2))
-    windows = []
-    for start, taper in pieces:
-        size = taper.size
-        inside = slice(start, start + size)
-        count = int(np.floor(cutoff * size * step)) + 1
-        project = _projection(inside, taper, count)
-        frequencies = np.arange(count, dtype=np.float64) / (size * step)
-        density = noise.at(np.maximum(frequencies, frequencies[1]))
-        variance = np.maximum(density / (2.0 * size * step), RELATIVE_FLOOR**2 * mean_power)
-        v_rms, x_rms = float(np.std(velocity[inside])), float(np.std(x[inside]))
-        windows.append(
-            Window(
-                omega=2.0 * np.pi * frequencies,
-                force=project(force),
-                variance=variance,
-                project=project,
-                frequency=v_rms / (2.0 * np.pi * x_rms) if x_rms else 0.0,
-                amplitude=float(np.sqrt(2.0) * x_rms),
-                speed=float(np.sqrt(2.0) * v_rms),
-                rest=0.0,
-                noise_power=float(2.0 * np.sum(variance)),
-                share=float(np.sum(taper**2)) / mass,
-            )
-        )
+    windows = [
+        _window(piece, motion, x, force, noise, step=step, cutoff=cutoff, mass=mass)
+        for piece in pieces
+    ]
     fade = max(int(np.ceil(1.0 / (cutoff * step))), 1)  # over which the lines' windows open
     shown = slice(inner.start + fade, inner.stop - fade)
 
