@@ -81,7 +81,7 @@ def verdict_lines(document: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(line for line in lines if line)
 
 
-_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
+_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}  # of bands, in words
 
 
 def structure_name(band: Mapping[str, Any]) -> str:
