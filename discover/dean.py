@@ -22,8 +22,8 @@ from models.device import Device
 from models.flow import dean_per_speed
 
 VERDICTS = ("consistent", "contradicted", "undetermined", "no-boundary", "no-geometry")
-_EXPONENTS = np.linspace(-3.0, 2.0, 101)
-_PLACES = 400
+_EXPONENTS = np.linspace(-3.0, 2.0, 101)  # k in f_low ~ A^k, each as probable beforehand
+_PLACES = 400  # of the boundary, even in the logarithm of frequency
 _SAME = 1.15  # ratio below which amplitudes, or frequencies, count as one
 
 
@@ -181,7 +181,9 @@ def check_dean(
     speed, (low, high) = boundary
     scale = dean_per_speed(device, convention=convention)
     interval = (scale * low, scale * high)
-    verdict, reason = _judged(interval, exponent, convention=convention, criterion=criterion)
+    verdict, reason = _verdict_and_reason(
+        interval, exponent, convention=convention, criterion=criterion
+    )
     return replace(
         without,
         verdict=verdict,
@@ -193,7 +195,7 @@ def check_dean(
     )
 
 
-def _judged(
+def _verdict_and_reason(
     interval: tuple[float, float],
     exponent: AmplitudeExponent | None,
     *,

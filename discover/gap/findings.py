@@ -47,12 +47,12 @@ def findings_of(
         Finding("note", text),
         *_about_start(baseline, found),
         *_wrong_signs(baseline, found.refitted),
-        *_not_kept(found),
+        *_refused_or_dropped(found),
         *_doubts(rounds),
         *_noisy(found.final),
         *_spikes(found.final, noise),
         *_not_met(found.final, noise),
-        *_left(found, noise),
+        *_unexplained(found, noise),
     )
 
 
@@ -81,7 +81,7 @@ def _about_start(baseline: Baseline, found: Search) -> list[Finding]:
     return result
 
 
-def _not_kept(found: Search) -> list[Finding]:
+def _refused_or_dropped(found: Search) -> list[Finding]:
     """Return which effects were refused, or dropped for a later one."""
     result = []
     if found.rejected is not None:
@@ -103,7 +103,7 @@ def _not_kept(found: Search) -> list[Finding]:
     return result
 
 
-def _left(found: Search, noise: float) -> list[Finding]:
+def _unexplained(found: Search, noise: float) -> list[Finding]:
     """Return what is left at the end that no effect of the list explains."""
     result = []
     over = found.final.gap / max(noise, 1e-300)

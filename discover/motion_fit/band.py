@@ -19,13 +19,13 @@ from models.motion import Motion
 
 _SIGNAL_TO_NOISE = 1000.0  # of the displacement's power, at the edge of the excited band
 EDGE = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
-_NYQUIST_SHARE = 0.95
-_FEWEST_LINES = 8
-RELATIVE_FLOOR = 1e-6
-_TAPER = 0.1
-_EDGE_PERIODS = 4.0
-_LINES_PER_WINDOW = 40
-_MAX_WINDOWS = 16
+_NYQUIST_SHARE = 0.95  # of the Nyquist frequency, where the band ends at the latest
+_FEWEST_LINES = 8  # of the spectrum, that the band holds at least
+RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights stay finite
+_TAPER = 0.1  # of a window, over which it crosses into its neighbour
+_EDGE_PERIODS = 4.0  # of the band's end, left out at either end of a record
+_LINES_PER_WINDOW = 40  # about, below the end of the band
+_MAX_WINDOWS = 16  # of one record
 
 
 def smooth(density: Array, averaged: int = 1) -> Array:

@@ -22,7 +22,7 @@ from models.motion import Motion, harmonic_motion
 HARMONICS = 31  # of the force; friction's fall off as 1/k, so further ones decide nothing
 GRID = 1024  # points of the one cycle kept for steady-state simulation
 RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights stay finite
-_PHASES = 360
+_PHASES = 360  # of a motion that is not measured, tried at even steps
 _REVERSAL = 3e-3  # of the speed amplitude
 _PIECE = 2**16  # samples
 BoolArray = NDArray[np.bool_]
@@ -66,7 +66,7 @@ def velocity_phase(displacement: Lines | None) -> float:
     return 0.0 if displacement is None else float(np.angle(displacement[1])) + 0.5 * np.pi
 
 
-def _resolved(samples: int, cycles: float, file: str) -> int:
+def _resolved_harmonics(samples: int, cycles: float, file: str) -> int:
     """Return how many harmonics the sampling resolves; refuse too few cycles, and none."""
     if cycles < 1.4:
         raise InputError(
@@ -116,7 +116,7 @@ def observe_sine(
     """
     time, force = record.time[usable], record.force[usable]
     duration = float(time[-1] - time[0]) * time.size / (time.size - 1)
-    count = _resolved(time.size, duration * frequency, record.file)
+    count = _resolved_harmonics(time.size, duration * frequency, record.file)
     middle = float(time.mean()) if duration * frequency > 2.0 else None
     every = moments(time)
     clear = moving(every, frequency, displacement)

@@ -33,8 +33,8 @@ from models.checks import InputError, InputErrors, nearest, printable, shown
 
 CAMPAIGN_FILE = "campaign.toml"
 _TABLES = ("title", "device", "columns", "units", "records", "rig", "system")
-_LONGEST_TITLE = 400
-_MOST_ERRORS = 20
+_LONGEST_TITLE = 400  # characters
+_MOST_ERRORS = 20  # that are told of one campaign
 _PIECE = 2**20  # bytes
 
 

@@ -21,7 +21,7 @@ from discover.records import Finding, Record
 from models.checks import InputError, printable
 
 _LARGER = ("mm", "ms", "kN")  # of two guesses of a unit the one that some record needs
-_QUARTER = 4
+_QUARTER = 4  # records, of which one is held out
 _NO_TIME = "no column for time among"
 
 

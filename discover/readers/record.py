@@ -86,7 +86,7 @@ def read_record(
     _check_varying(measured, file)
     findings += _value_findings(measured, file)
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
-    values, disagreeing = _agreeing(sampled.columns, step, file)
+    values, disagreeing = _checked_by_motion(sampled.columns, step, file)
     findings += disagreeing
     record = Record(
         file=file,
@@ -150,7 +150,7 @@ def _value_findings(values: Mapping[str, Array], file: str) -> list[Finding]:
     return [Finding("warning", text, file) for text in odd if text]
 
 
-def _agreeing(
+def _checked_by_motion(
     columns: Mapping[str, Array], step: float, file: str
 ) -> tuple[dict[str, Array], list[Finding]]:
     """Return the columns without a velocity and an acceleration that the displacement denies.

@@ -22,11 +22,11 @@ from discover.regression.least_squares import reduce_rows, solve
 from models.checks import Array, InputError, finite_array
 from models.compiled import compiled
 
-_ROWS_AT_ONCE = 4096
+_ROWS_AT_ONCE = 4096  # that are reduced to a triangle together
 _DEPENDENT = 1e-24  # squared length left of a unit column that the others make up
 _CANCELS = 1e-6  # part of the misfit below which it is formed from the residual itself
-_MOST_SUBSETS = 200_000_000
-_MOST_GROUPS = 62
+_MOST_SUBSETS = 200_000_000  # that one search compares: some minutes
+_MOST_GROUPS = 62  # bits of a whole number, one each
 _SUMS_IN_ANY_ORDER = {"reassoc", "contract"}  # so that the processor sums several at a time
 
 

@@ -14,7 +14,7 @@ from discover.regression.best_subset import best_subsets
 from discover.regression.term_count import CRITERIA, by_criterion, independent_samples
 from models.checks import Array, number, one_of
 
-_KEPT = 5
+_KEPT = 5  # subsets of each size
 
 
 class InerterRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
