@@ -51,7 +51,8 @@ def constants_page() -> str:
         " comment beside it says it is, with its unit. What has no unit is a count or a ratio."
         " Where a number comes from is said in the module's own text: a source, a derivation, or"
         " the command that calibrates it. Where nothing stands beside a value, its name says what"
-        " it is; those of the engine (posterior, bands, gap, study, rows) all have their text.",
+        " it is; all have their text on the way from a file to an answer (readers to study and"
+        " gap).",
         "",
     ]
     for package in PACKAGES:

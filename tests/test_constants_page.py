@@ -11,6 +11,13 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 ENGINE = [f"discover/{name}" for name in ("posterior", "bands", "gap", "study", "rows")]
+DATA = [
+    f"discover/{name}"
+    for name in (
+        "readers", "record_checks", "data_check", "motion_fit", "sine_fit", "record_curves",
+        "regression",
+    )
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -49,8 +56,8 @@ def test_page_lists_every_number_that_the_loaded_modules_hold(pages, folder):
     assert held <= listed
 
 
-@pytest.mark.parametrize("folder", ENGINE)
-def test_every_number_of_the_engine_says_what_it_is(pages, folder):
+@pytest.mark.parametrize("folder", [*ENGINE, *DATA])
+def test_every_number_of_the_engine_and_of_the_data_s_way_to_it_says_what_it_is(pages, folder):
     found = list(pages.constants(folder))
     assert found
     assert [f"{c.module}: {c.name}" for c in found if not c.said] == []

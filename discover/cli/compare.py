@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -48,7 +48,9 @@ def compare(
     jobs: options.Jobs = 1,
 ) -> int:
     """Put answers side by side: structures, coefficients and whether they differ, errors."""
-    _check_answers(answers)
+    if len(answers) < 2:
+        raise InputError("answers", expected="two or more", found=answers[0], where="compare")
+    options.each_once("answers", answers, where="compare")
     formats = options.figure_formats(figures)
     names = _short(answers)
     folder = result_folder("compare", names[0], out, model="-".join(names[1:]))
@@ -90,15 +92,6 @@ def compare(
         as_json=as_json,
     )
     return 0
-
-
-def _check_answers(answers: Sequence[str]) -> None:
-    """Refuse fewer than two answers, and one that is given twice."""
-    if len(answers) < 2:
-        raise InputError("answers", expected="two or more", found=answers[0], where="compare")
-    twice = next((a for a in answers if answers.count(a) > 1), None)
-    if twice is not None:
-        raise InputError("answers", expected="each once", found=f"{twice} twice", where="compare")
 
 
 def _sides(
