@@ -9,7 +9,7 @@ the posterior of k and of the boundary's place.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,8 +22,8 @@ from models.device import Device
 from models.flow import dean_per_speed
 
 VERDICTS = ("consistent", "contradicted", "undetermined", "no-boundary", "no-geometry")
-_EXPONENTS = np.linspace(-3.0, 2.0, 101)
-_PLACES = 400
+_EXPONENTS = np.linspace(-3.0, 2.0, 101)  # k in f_low ~ A^k, each as probable beforehand
+_PLACES = 400  # of the boundary, even in the logarithm of frequency
 _SAME = 1.15  # ratio below which amplitudes, or frequencies, count as one
 
 
@@ -156,86 +156,75 @@ def check_dean(
     -------
     DeanCheck
     """
-    k = None if exponent is None else exponent.value
-    k_interval = None if exponent is None else exponent.interval
-
-    def result(
-        verdict: str,
-        reason: str,
-        dean: tuple[float, tuple[float, float]] | None = None,
-        both: tuple[float, float] | None = None,
-    ) -> DeanCheck:
-        return DeanCheck(
-            convention,
-            criterion,
-            verdict,
-            None if dean is None else dean[0],
-            None if dean is None else dean[1],
-            None if both is None else both[0],
-            None if both is None else both[1],
-            k if boundary is not None else None,
-            k_interval if boundary is not None else None,
-            reason,
-        )
-
+    moved = None if boundary is None else exponent
+    without = DeanCheck(
+        convention=convention,
+        criterion=criterion,
+        verdict="no-boundary",
+        boundary_dean=None,
+        interval=None,
+        boundary_dean_paper=None,
+        boundary_dean_standard=None,
+        amplitude_exponent=None if moved is None else moved.value,
+        amplitude_exponent_interval=None if moved is None else moved.interval,
+        reason="One structure holds over all tests: there is no boundary.",
+    )
     if device is not None and boundary is None:
-        return result("no-boundary", "One structure holds over all tests: there is no boundary.")
+        return without
     if device is None or boundary is None:
-        return result(
-            "no-geometry",
-            "Without the device's geometry there is no Dean number; give [device] in"
+        return replace(
+            without,
+            verdict="no-geometry",
+            reason="Without the device's geometry there is no Dean number; give [device] in"
             " campaign.toml.",
         )
     speed, (low, high) = boundary
     scale = dean_per_speed(device, convention=convention)
-    dean = (scale * speed, (scale * low, scale * high))
-    both = (
-        dean_per_speed(device, convention="paper") * speed,
-        dean_per_speed(device, convention="standard") * speed,
+    interval = (scale * low, scale * high)
+    verdict, reason = _verdict_and_reason(
+        interval, exponent, convention=convention, criterion=criterion
     )
-    holds = dean[1][0] <= criterion <= dean[1][1]
-    span = f"{dean[1][0]:.3g} to {dean[1][1]:.3g} ({convention} convention)"
-    if k_interval is None:
-        return result(
-            "undetermined",
-            f"The boundary lies at a Dean number of {span}, but the tests beside it have one"
-            " amplitude or one frequency: a boundary fixed in frequency would look the same."
-            " Repeat them at half and at twice the amplitude and the frequency.",
-            dean,
-            both,
-        )
-    moves, fixed = (k_interval[0] <= value <= k_interval[1] for value in (-1.0, 0.0))
-    exponent_text = (
-        "the boundary's frequency goes as amplitude^k, k from"
-        f" {k_interval[0]:.2f} to {k_interval[1]:.2f}"
+    return replace(
+        without,
+        verdict=verdict,
+        boundary_dean=scale * speed,
+        interval=interval,
+        boundary_dean_paper=dean_per_speed(device, convention="paper") * speed,
+        boundary_dean_standard=dean_per_speed(device, convention="standard") * speed,
+        reason=reason,
     )
-    if not moves:
-        return result(
-            "contradicted",
-            f"{capitalize_first(exponent_text)}: the criterion needs k = -1.",
-            dean,
-            both,
+
+
+def _verdict_and_reason(
+    interval: tuple[float, float],
+    exponent: AmplitudeExponent | None,
+    *,
+    convention: str,
+    criterion: float,
+) -> tuple[str, str]:
+    """Return the verdict on a boundary whose Dean number is known, and its reason."""
+    lies = (
+        f"The boundary lies at a Dean number of {interval[0]:.3g} to {interval[1]:.3g}"
+        f" ({convention} convention)"
+    )
+    if exponent is None:
+        return "undetermined", (
+            f"{lies}, but the tests beside it have one amplitude or one frequency: a boundary"
+            " fixed in frequency would look the same. Repeat them at half and at twice the"
+            " amplitude and the frequency."
         )
-    if not holds:
-        return result(
-            "contradicted",
-            f"The boundary lies at a Dean number of {span}, which leaves {criterion:g} out;"
-            f" {exponent_text}.",
-            dean,
-            both,
+    low, high = exponent.interval
+    follows = f"the boundary's frequency goes as amplitude^k, k from {low:.2f} to {high:.2f}"
+    if not low <= -1.0 <= high:
+        return "contradicted", f"{capitalize_first(follows)}: the criterion needs k = -1."
+    if not interval[0] <= criterion <= interval[1]:
+        return "contradicted", f"{lies}, which leaves {criterion:g} out; {follows}."
+    if low <= 0.0 <= high:
+        return "undetermined", (
+            f"{lies}, but {follows}, which holds both -1 (the criterion) and 0 (fixed in"
+            " frequency). Amplitudes further apart would tell."
         )
-    if fixed:
-        return result(
-            "undetermined",
-            f"The boundary lies at a Dean number of {span}, but {exponent_text}, which holds both"
-            " -1 (the criterion) and 0 (fixed in frequency). Amplitudes further apart would tell.",
-            dean,
-            both,
-        )
-    return result(
-        "consistent",
-        f"The boundary lies at a Dean number of {span}, which holds {criterion:g};"
-        f" {exponent_text}, which holds -1 (the criterion) and not 0 (fixed in frequency).",
-        dean,
-        both,
+    return "consistent", (
+        f"{lies}, which holds {criterion:g}; {follows}, which holds -1 (the criterion) and not 0"
+        " (fixed in frequency)."
     )

@@ -35,7 +35,7 @@ INERTIAL = (1.5, 2.0)
 B0_BOUNDS = (0.0, 30.0)
 """The paper's bounds of b0."""
 
-_STARTS = 7
+_STARTS = 7  # orders, even over the bounds
 
 
 @dataclass(frozen=True)

@@ -59,19 +59,19 @@ class RecordMotion:
     @property
     def amplitude_ratio(self) -> float:
         """Simulated over measured root mean square about the mean, in the last third."""
-        late = self._late
+        late = self._end_of_record
         measured, simulated = np.std(self.measured[late]), np.std(self.simulated[late])
         return float(simulated / measured) if measured else math.inf
 
     @property
     def drift_percent(self) -> float:
         """Mean of simulated less measured over the last third, of the measured rms, percent."""
-        late = self._late
+        late = self._end_of_record
         scale = _norm(self.measured) / math.sqrt(self.measured.size)
         return 100.0 * float(np.mean(self.simulated[late] - self.measured[late])) / scale
 
     @property
-    def _late(self) -> slice:
+    def _end_of_record(self) -> slice:
         return slice(int(self.time.size * (1.0 - _LATE)), None)
 
     def to_dict(self) -> dict[str, Any]:
@@ -147,7 +147,7 @@ def motion_gap(model: Model, campaign: Campaign) -> MotionGap:
     """
     system, driven = require_system(campaign)
     numbers = {record.file: place for place, record in enumerate(campaign.records, start=1)}
-    records = tuple(_one(model, record, system, numbers[record.file]) for record in driven)
+    records = tuple(_moved(model, record, system, numbers[record.file]) for record in driven)
     left = len(campaign.records) - len(driven)
     return MotionGap(model.name, system, records, _findings(records, left, system.input))
 
@@ -190,7 +190,7 @@ def motion_before_and_after(campaign: Campaign, before: Model, after: Model) -> 
     return result
 
 
-def _one(model: Model, record: Record, system: CarriedSystem, number: int) -> RecordMotion:
+def _moved(model: Model, record: Record, system: CarriedSystem, number: int) -> RecordMotion:
     record = record.even  # a simulation in time has equal steps
     observation = replace(observe(record), test=number)
     usable = observation.usable

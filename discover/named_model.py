@@ -61,10 +61,10 @@ def named_model(name: str, device: Device | None, *, where: str = "--model") -> 
     if name.startswith("ioim"):
         make = ioim_laminar if name == "ioim-laminar" else ioim_turbulent
         if device.coulomb_friction is not None:
-            return _everywhere(make(device), device)
+            return _one_band(make(device), device)
         frictionless = make(device, friction=0.0)
         terms = tuple(t for t in frictionless.terms if t.id != "coulomb-friction")
-        return _everywhere(ForceModel(terms, frictionless.name), device)
+        return _one_band(ForceModel(terms, frictionless.name), device)
     known = _ABOVE if name == "foim" else _BELOW
     if device.name not in known:
         raise InputError(
@@ -75,7 +75,7 @@ def named_model(name: str, device: Device | None, *, where: str = "--model") -> 
         )
     above = _ABOVE[device.name]
     if name == "foim":
-        return _everywhere(foim(device, *above), device)
+        return _one_band(foim(device, *above), device)
     return sfoim(device, _BELOW[device.name], above)
 
 
@@ -109,7 +109,7 @@ def left_out(name: str, device: Device | None) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _everywhere(model: ForceModel, device: Device) -> SegmentedModel:
+def _one_band(model: ForceModel, device: Device) -> SegmentedModel:
     return SegmentedModel((Band(None, None, model),), "speed", "paper", device, model.name)
 
 

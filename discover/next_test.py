@@ -22,10 +22,10 @@ from models.checks import Array
 from models.constitutive import ForceModel
 from models.motion import Motion, sine_motion
 
-_FREQUENCIES = 25
-_AMPLITUDES = 9
+_FREQUENCIES = 25  # of tests that are weighed, even in the logarithm
+_AMPLITUDES = 9  # likewise
 _LINES = 8  # the mean and seven harmonics carry what tells structures apart
-_SAMPLES = 128
+_SAMPLES = 128  # of one cycle
 _WIDER = 2.0  # beyond the tested frequencies, where the rig's limits leave it open
 _LEAST_NOISE = 1e-3  # of the force: no new test is taken for better than this
 _STEP = 1e-4  # of a number, for its slope

@@ -16,7 +16,7 @@ from models.checks import Array, InputError
 
 KINDS = ("sine", "periodic", "transient", "trajectory")
 
-_FEWEST_CYCLES = 1.5
+_FEWEST_CYCLES = 1.5  # of a sine test
 _MOST_DISTORTION = 0.2  # of the velocity: a hydraulic actuator has up to 0.1, a triangle wave 1
 _MOST_STRUCTURE = 0.01  # share of the variance that is neither harmonics nor broad-band noise
 _FEWEST_PERIODS = 4  # from which averaging over periods tells noise from motion

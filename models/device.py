@@ -108,20 +108,15 @@ class Device:
             number(key, getattr(self, key), above=0.0, where=where)
         number("helix_pitch", self.helix_pitch, above=0.0, where=where)
         number("transition_length", self.transition_length, at_least=0.0, where=where)
-        if not self.rod_radius < self.cylinder_radius:
-            raise InputError(
-                "rod_radius",
-                expected=f"below the cylinder_radius ({self.cylinder_radius} m)",
-                found=f"{self.rod_radius} m",
-                where=where,
-            )
-        if not self.channel_radius < self.helix_radius:
-            raise InputError(
-                "channel_radius",
-                expected=f"below the helix_radius ({self.helix_radius} m)",
-                found=f"{self.channel_radius} m",
-                where=where,
-            )
+        for inner, outer in (("rod_radius", "cylinder_radius"), ("channel_radius", "helix_radius")):
+            radius, limit = getattr(self, inner), getattr(self, outer)
+            if not radius < limit:
+                raise InputError(
+                    inner,
+                    expected=f"below the {outer} ({limit} m)",
+                    found=f"{radius} m",
+                    where=where,
+                )
         # Relative tolerance: a pitch of exactly one diameter (turns touching) survives conversion.
         if self.turns > 1.0 and self.helix_pitch < 2.0 * self.channel_radius * (1.0 - 1e-9):
             raise InputError(

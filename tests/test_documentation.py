@@ -50,7 +50,7 @@ def test_links_of_a_page_lead_to_files_that_are_there(page):
     assert sorted({*there, *written}) == sorted(set(kept))
 
 
-BUILT_PAGES = [f"{BUILT}{name}.md" for name in ("commands", "terms", "documents")]
+BUILT_PAGES = [f"{BUILT}{name}.md" for name in ("commands", "constants", "terms", "documents")]
 
 
 def test_every_page_stands_in_the_site_s_contents():

@@ -70,6 +70,7 @@ def test_wheel_holds_the_packages_the_templates_and_the_campaign(wheel):
         shipped = {p.name for p in (ROOT / "data" / campaign).iterdir()}
         within = f"discover/_data/{campaign}/"
         assert {n.removeprefix(within) for n in names if n.startswith(within)} == shipped
+    assert {"discover/py.typed", "models/py.typed"} <= names
     tops = {n.split("/")[0] for n in names}
     assert tops == {"models", "discover", f"inerter_discovery-{__version__}.dist-info"}
 

@@ -11,7 +11,7 @@ from discover.bands.divisions import gradual, refined, sharp
 from discover.bands.search import Banded, BandSearch
 from models.checks import Array
 
-_PLACES, _WIDTHS = 61, np.geomspace(0.1, 4.0, 16)
+_PLACES, _WIDTHS = 61, np.geomspace(0.1, 4.0, 16)  # tried: how many, and of the logarithm
 
 
 @dataclass(frozen=True)

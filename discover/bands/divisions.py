@@ -19,10 +19,10 @@ Brackets = tuple[tuple[float, float], ...]
 
 _THERE = 0.5
 """Share of a unit that is in a band, from which the unit counts as one of it."""
-_PLACES = 9
+_PLACES = 9  # of a gradual change that are tried, even in the logarithm
 _WIDTHS = (0.6, 1.2, 2.4)
 """Of gradual changes that are weighed beside sharp ones: finer ones follow around the best."""
-_FINER = 3
+_FINER = 3  # times, in place and width, that the next look around the best is
 _GRADUAL = 0.1
 """Chance beforehand that a boundary is gradual."""
 

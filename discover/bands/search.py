@@ -32,9 +32,9 @@ from discover.posterior.structures import (
 )
 from models.checks import Array, Indices
 
-MOST_BANDS = 5
+MOST_BANDS = 5  # that a campaign is divided into
 _ROUNDS = 4  # of dividing and climbing
-_LOG_2 = float(np.log(2.0))
+_LOG_2 = float(np.log(2.0))  # nats: what a further band costs, for each band that is there
 _CLOSE = 0.01  # of a coordinate's logarithm, below which gradual divisions are one
 
 

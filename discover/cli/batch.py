@@ -7,9 +7,9 @@ import hashlib
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,6 +17,10 @@ from discover.cli import options
 from discover.cli.invocation import Invocation
 from discover.cli.results import hold_folder, shown_path
 from models.checks import InputError, printable
+
+if TYPE_CHECKING:
+    from discover.cli.batch_work import Item
+    from discover.executor import Executor
 
 FAILED = 1
 MARK = ".inerter-batch"
@@ -63,9 +67,9 @@ def batch(
     from discover.batch.campaigns import listed_campaigns, stamp
     from discover.batch.document import batch_document
     from discover.batch.table import table_files, table_rows
-    from discover.cli.batch_work import Item, answer_of, is_done, work
+    from discover.cli.batch_work import Item, answer_of
     from discover.document import json_text
-    from discover.executor import Lost, executor
+    from discover.executor import executor
     from discover.report.batch import batch_lines, batch_report
 
     model, model_hash = _model(model)
@@ -76,20 +80,12 @@ def batch(
         Item(one.path, one.given, home / one.label, stamp(one, asked), model, seed)
         for one in listed
     ]
-    errors = dict.fromkeys(range(len(items)), "")
-    todo = [i for i, item in enumerate(items) if not is_done(item)]
+    labels = [one.label for one in listed]
     with executor(jobs, cluster) as where:
         out.mkdir(parents=True, exist_ok=True)
         (out / MARK).touch()
-        with _progress(len(items), len(items) - len(todo)) as tell:
-            for place, found in where.finished(work, [items[i] for i in todo]):
-                error = found.reason if isinstance(found, Lost) else found
-                errors[todo[place]] = error
-                tell(f"{listed[todo[place]].label}: {error}" if error else "")
-    answers = [
-        answer_of(item, one.label, errors[i])
-        for i, (item, one) in enumerate(zip(items, listed, strict=True))
-    ]
+        errors = _work_off(items, labels, where)
+    answers = [answer_of(*each) for each in zip(items, labels, errors, strict=True)]
     rows = table_rows(answers)
     document = batch_document(answers, rows, seed=seed, model=model)
     invocation: Invocation = context.obj
@@ -103,7 +99,22 @@ def batch(
             typer.echo(line)
         typer.echo(f"Table: {shown_path(home / 'table.csv')}")
         typer.echo(f"Report: {shown_path(home / 'report.html')}")
-    return FAILED if any(errors.values()) else 0
+    return FAILED if any(errors) else 0
+
+
+def _work_off(items: Sequence[Item], labels: Sequence[str], where: Executor) -> list[str]:
+    """Do what is not done yet; return why each item failed, "" where it did not."""
+    from discover.cli.batch_work import is_done, work
+    from discover.executor import Lost
+
+    errors = [""] * len(items)
+    todo = [i for i, item in enumerate(items) if not is_done(item)]
+    with _progress(len(items), len(items) - len(todo)) as tell:
+        for place, found in where.finished(work, [items[i] for i in todo]):
+            error = found.reason if isinstance(found, Lost) else found
+            errors[todo[place]] = error
+            tell(f"{labels[todo[place]]}: {error}" if error else "")
+    return errors
 
 
 def _model(name: str | None) -> tuple[str | None, str]:

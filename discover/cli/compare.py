@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from discover.compare import Side
     from discover.records import Campaign
     from models.constitutive import ForceModel, SegmentedModel
+    from models.device import Device
 
 
 def compare(
@@ -53,9 +55,7 @@ def compare(
     """
     if len(answers) < 2:
         raise InputError("answers", expected="two or more", found=answers[0], where="compare")
-    twice = next((a for a in answers if answers.count(a) > 1), None)
-    if twice is not None:
-        raise InputError("answers", expected="each once", found=f"{twice} twice", where="compare")
+    options.each_once("answers", answers, where="compare")
     formats = options.figure_formats(figures)
     names = _short(answers)
     folder = result_folder("compare", names[0], out, model="-".join(names[1:]))
@@ -76,21 +76,11 @@ def compare(
         with working(f"Reading {path}"):
             common[str(path)] = read_campaign(path)
     device = next((c.device for c in common.values() if c.device is not None), None)
-    found: dict[str, Side] = {}
-    # Models by name come last: they take the device of the others.
-    for name, answer in sorted(
-        zip(names, answers, strict=True), key=lambda given: not Path(given[1]).exists()
-    ):
-        with working(f"Reading {answer}"):
-            records = next(iter(common.values()), None)
-            side, campaign = _side(name, answer, device, records, seed=seed, jobs=jobs)
-        found[name] = side
-        device = side.model.device if device is None else device
-        # A copy of records that are there already would tell the same errors again.
-        hashes = {known.content_hash for known in common.values()}
-        if campaign is not None and on is None and campaign.content_hash not in hashes:
-            common[answer] = campaign
-    sides = [found[name] for name in names]
+    sides, studied = _sides(
+        dict(zip(names, answers, strict=True)), device, common, seed=seed, jobs=jobs
+    )
+    if on is None:
+        common = studied
     simulations = []
     for shown, records in common.items():
         with working(f"Predicting {shown}"):
@@ -111,8 +101,33 @@ def compare(
     return 0
 
 
+def _sides(
+    answers: Mapping[str, str], device: Device | None, common: Mapping[str, Campaign], *,
+    seed: int, jobs: int,
+) -> tuple[list[Side], dict[str, Campaign]]:
+    """Return the answers read, in the order of their names, and the campaigns studied for it.
+
+    Models that are no files come last: they take the device of the others, and are fitted to the
+    common records where their coefficients have to be.
+    """
+    found: dict[str, Side] = {}
+    studied: dict[str, Campaign] = {}
+    for name, answer in sorted(answers.items(), key=lambda given: not Path(given[1]).exists()):
+        with working(f"Reading {answer}"):
+            records = next(iter((common or studied).values()), None)
+            side, campaign = _side(name, answer, device, records, seed=seed, jobs=jobs)
+        found[name] = side
+        device = side.model.device if device is None else device
+        # A copy of records that are there already would tell the same errors again.
+        hashes = {known.content_hash for known in studied.values()}
+        if campaign is not None and campaign.content_hash not in hashes:
+            studied[answer] = campaign
+    return [found[name] for name in answers], studied
+
+
 def _side(
-    name: str, answer: str, device: Any, records: Campaign | None, *, seed: int, jobs: int
+    name: str, answer: str, device: Device | None, records: Campaign | None, *, seed: int,
+    jobs: int,
 ) -> tuple[Side, Campaign | None]:
     """Return an answer from what was typed, and the campaign where it was studied for this.
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,7 +13,10 @@ from discover._version import __version__
 from discover.cli import options
 from discover.cli.invocation import Invocation
 from discover.cli.results import deliver, result_folder, working
-from models.checks import InputError
+from models.checks import one_of
+
+if TYPE_CHECKING:
+    from models.device import Device, Fluid
 
 FAILED = 1
 
@@ -110,16 +114,11 @@ def design(
     from discover.cli.known_device import known_device
     from discover.readers.units import quantity
     from discover.report.design import design_figures, design_lines, design_report
-    from models.design import FLUIDS, DesignBounds, Duty, minimise_critical_frequency
+    from discover.report.files import page_files
+    from models.design import DesignBounds, Duty, minimise_critical_frequency
 
-    names = options.identifiers(fluids, where="--fluids") or ("own",)
     baseline = known_device(device)
-    offered = {"own": baseline.fluid, **FLUIDS}
-    for name in names:
-        if name not in offered:
-            raise InputError(
-                "fluid", expected="one of " + ", ".join(offered), found=name, where="--fluids"
-            )
+    offered = _chosen_fluids(fluids, baseline)
     duty = Duty(
         amplitude=quantity(amplitude, "length", name="amplitude", where="--amplitude"),
         frequency=quantity(frequency, "frequency", name="frequency", where="--frequency"),
@@ -136,20 +135,11 @@ def design(
         "package_length": (package_length, "length"),
         "pressure": (pressure, "pressure"),
     }
-    chosen: dict[str, Any] = {
-        key: quantity(text, kind, name=key, where="--" + key.replace("_", "-"))
-        for key, (text, kind) in stated.items()
-        if text is not None
-    }
-    bounds = replace(bounds, **chosen)
+    bounds = replace(bounds, **_quantities(stated))
     folder = result_folder("design", device, out)
     with working("Designing"):
         result = minimise_critical_frequency(
-            baseline,
-            duty=duty,
-            bounds=bounds,
-            fluids={name: offered[name] for name in names},
-            seed=seed,
+            baseline, duty=duty, bounds=bounds, fluids=offered, seed=seed
         )
     with working("Testing the design on the virtual rig"):
         loop = close_loop(result, seed=seed, jobs=jobs) if verify else None
@@ -165,14 +155,34 @@ def design(
         figures = design_figures(document)
         invocation: Invocation = context.obj
         page = design_report(document, figures, command=invocation.repeat(seed=seed))
-    files = {"report.html": page}
-    files |= {f"figures/{name}.svg": svg for name, svg in figures.items()}
     deliver(
         document,
         name="design.json",
         folder=folder,
-        files=files,
+        files=page_files(page, figures),
         summary=design_lines(document),
         as_json=as_json,
     )
     return 0 if result.feasible else FAILED
+
+
+def _chosen_fluids(names: str | None, baseline: Device) -> dict[str, Fluid]:
+    """Return the fluids that may be filled in, by name; the device's own where none is named."""
+    from models.design import FLUIDS
+
+    offered = {"own": baseline.fluid, **FLUIDS}
+    chosen = options.identifiers(names, where="--fluids") or ("own",)
+    for name in chosen:
+        one_of("fluid", name, offered, where="--fluids")
+    return {name: offered[name] for name in chosen}
+
+
+def _quantities(stated: Mapping[str, tuple[str | None, str]]) -> dict[str, Any]:
+    """Return the quantities that were typed, in SI: text and kind of each by its option's name."""
+    from discover.readers.units import quantity
+
+    return {
+        name: quantity(text, kind, name=name, where="--" + name.replace("_", "-"))
+        for name, (text, kind) in stated.items()
+        if text is not None
+    }

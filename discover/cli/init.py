@@ -80,51 +80,25 @@ def init(
     units = _pairs(unit, "--unit", "UNIT")
     folder, inside = _found(files)
     target = folder / _NAME
-    if target.exists() and not replace_:
-        raise InputError(
-            _NAME, expected="new (--replace writes over it)", found="one that is there",
-            where=str(folder),
-        )  # fmt: skip
-    if not os.access(folder, os.W_OK):
-        raise InputError("folder", expected="writable", found="not so", where=str(folder))
+    _check_target(target, replaced=replace_)
     results = result_folder("init", folder, out)
 
     # Loaded here: --help and complaints about options need no numerics.
-    from discover.cli.questions import ask, at_terminal, rate
-    from discover.readers import Answers, draft_campaign, read_campaign, record_files
+    from discover.cli.questions import at_terminal, rate
+    from discover.readers import Answers, read_campaign, record_files
     from discover.readers.columns import QUANTITIES
-    from discover.readers.draft import TimeMissing
     from discover.readers.units import check_unit
     from discover.report.draft import draft_document, draft_figures, draft_lines, draft_report
+    from discover.report.files import page_files
 
     for quantity, text in units.items():
         check_unit(text, QUANTITIES[quantity], name=quantity, where="--unit")
     given = Answers(named, units, None if sampling_rate is None else rate(sampling_rate))
-    listed = inside or record_files(folder)
-
-    def drafted(answers: Answers, preset: str) -> Draft:
-        with working(f"Reading {folder}"):
-            return draft_campaign(
-                folder,
-                listed,
-                title=title or folder.resolve().name,
-                answers=answers,
-                device=preset,
-            )
-
-    asking = at_terminal() and not as_json
-    try:
-        draft = drafted(given, device or "")
-    except TimeMissing:
-        if not asking:
-            raise
-        given = replace(given, sampling_rate=rate(typer.prompt("Sampling rate", err=True)))
-        draft = drafted(given, device or "")
-    if asking:
-        given, preset = ask(draft, given, device)
-        draft = drafted(given, preset)
-    text = draft.toml()
-    _write(target, text)
+    draft = _draft(
+        folder, inside or record_files(folder), given, title, device,
+        asking=at_terminal() and not as_json,
+    )  # fmt: skip
+    _write(target, draft.toml())
     written = read_campaign(folder)
     document = draft_document(draft, content_hash=written.content_hash, written=str(target))
     lines = draft_lines(draft, written=str(target), campaign=shlex.quote(str(folder)))
@@ -137,11 +111,59 @@ def init(
         document,
         name="init.json",
         folder=results,
-        files={"report.html": page, **{f"figures/{n}.svg": svg for n, svg in figures.items()}},
+        files=page_files(page, figures),
         summary=lines,
         as_json=as_json,
     )
     return 0
+
+
+def _check_target(target: Path, *, replaced: bool) -> None:
+    """Refuse to write where a file is there and not to be replaced, or where nobody may write."""
+    where = str(target.parent)
+    if target.exists() and not replaced:
+        raise InputError(
+            target.name, expected="new (--replace writes over it)", found="one that is there",
+            where=where,
+        )  # fmt: skip
+    if not os.access(target.parent, os.W_OK):
+        raise InputError("folder", expected="writable", found="not so", where=where)
+
+
+def _draft(
+    folder: Path,
+    files: Sequence[str],
+    given: Answers,
+    title: str | None,
+    device: str | None,
+    *,
+    asking: bool,
+) -> Draft:
+    """Return the campaign as it is guessed from its files, after questions where somebody answers.
+
+    Without a sampling rate, files that have no time column can't be read at all: it is asked for
+    first. The other questions show what was guessed.
+    """
+    from discover.cli.questions import ask, rate
+    from discover.readers import draft_campaign
+    from discover.readers.draft import TimeMissing
+
+    def drafted(answers: Answers, preset: str) -> Draft:
+        with working(f"Reading {folder}"):
+            return draft_campaign(
+                folder, files, title=title or folder.resolve().name, answers=answers, device=preset
+            )
+
+    try:
+        draft = drafted(given, device or "")
+    except TimeMissing:
+        if not asking:
+            raise
+        given = replace(given, sampling_rate=rate(typer.prompt("Sampling rate", err=True)))
+        draft = drafted(given, device or "")
+    if not asking:
+        return draft
+    return drafted(*ask(draft, given, device))
 
 
 def _pairs(texts: Sequence[str] | None, where: str, what: str) -> Mapping[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -158,6 +159,19 @@ def grid(
     # Counting instead of adding keeps 0.3 from becoming 0.30000000000000004.
     count = int(np.floor((stop - start) / step + 1e-9)) + 1
     return tuple(round(start + i * step, 12) for i in range(count))
+
+
+def each_once(name: str, given: Sequence[str], *, where: str) -> None:
+    """Refuse what is given twice.
+
+    Raises
+    ------
+    InputError
+        With the first that is.
+    """
+    twice = next((g for g in given if given.count(g) > 1), None)
+    if twice is not None:
+        raise InputError(name, expected="each once", found=f"{twice} twice", where=where)
 
 
 def identifiers(text: str | None, *, where: str) -> tuple[str, ...] | None:

@@ -38,12 +38,12 @@ def _interrupt(number: int, frame: object) -> None:
 def _swallowed(told: UnraisableHookArgs) -> None:
     """Send an interrupt again that came where Python lets nothing through, as in a finaliser."""
     if issubclass(told.exc_type, KeyboardInterrupt):
-        _thread.start_new_thread(_again, ())
+        _thread.start_new_thread(_interrupt_after_pause, ())
     else:
         sys.__unraisablehook__(told)
 
 
-def _again() -> None:
+def _interrupt_after_pause() -> None:
     time.sleep(_PAUSE)  # the finaliser has to end first
     _thread.interrupt_main()
 

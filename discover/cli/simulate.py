@@ -40,9 +40,7 @@ def simulate(
             "arguments", expected="models and then a campaign", found=shown(campaign),
             where="simulate",
         )  # fmt: skip
-    twice = next((n for n in names if names.count(n) > 1), None)
-    if twice is not None:
-        raise InputError("models", expected="each once", found=f"{twice} twice", where="simulate")
+    options.each_once("models", names, where="simulate")
     formats = options.figure_formats(figures)
     folder = result_folder("simulate", campaign, out)
 

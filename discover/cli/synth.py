@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 import shlex
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,6 +16,9 @@ from discover.cli.results import hold_folder, working
 from discover.report.folder import check_replaceable, write_folder
 from discover.words import counted
 from models.checks import InputError
+
+if TYPE_CHECKING:
+    from models.rig import Limits
 
 _AMPLITUDES = "5,10,20"
 _LARGEST = 100.0  # of noise or a hidden effect over the force
@@ -91,15 +95,7 @@ def synth(
     Sine tests of a device, with effects hidden in it by --hide; with --model exact records of a
     model, and noise.
     """
-    if model is not None and hide:
-        raise InputError("--hide", expected="used with the rig", found="--model", where="synth")
-    if model is None and effect_files:
-        raise InputError(
-            "--effect-file",
-            expected="used with --model (--hide knows only the rig's effects)",
-            found="no --model",
-            where="synth",
-        )
+    _check_together(model, hide, effect_files)
     share = fraction(noise, where="--noise")
     sizes = dict(_hidden(item) for item in hide or ())
     grid_hz = options.grid(frequencies, where="--frequencies", at_least=1e-3, at_most=1e3)
@@ -141,17 +137,37 @@ def synth(
             hidden=hidden,
         )
     written = write_folder(folder, files, fresh=True)
-    if grid_hz is not None and len(plan) < len(grid_hz) * len(grid_mm):
-        left_out = len(grid_hz) * len(grid_mm) - len(plan)
-        typer.echo(
-            f"{counted(left_out, 'test')} left out: beyond the rig's {1e3 * limits.stroke:g} mm,"
-            f" {limits.speed:g} m/s, {limits.acceleration:.0f} m/s^2 or {1e-3 * limits.force:g} kN."
-        )
+    asked = len(plan) if grid_hz is None else len(grid_hz) * len(grid_mm)
+    if len(plan) < asked:
+        typer.echo(_left_out(asked - len(plan), limits))
     for what in hidden:
         typer.echo(f"Hidden: {what}")
     then = f"inerter check {shlex.quote(str(written))}"
     typer.echo(f"{counted(len(records), 'record')} in {written}; next: {then}")
     return 0
+
+
+def _check_together(
+    model: str | None, hide: Sequence[str] | None, effect_files: Sequence[Path] | None
+) -> None:
+    """Refuse options that do not go together: the rig has effects, a model has its own terms."""
+    if model is not None and hide:
+        raise InputError("--hide", expected="used with the rig", found="--model", where="synth")
+    if model is None and effect_files:
+        raise InputError(
+            "--effect-file",
+            expected="used with --model (--hide knows only the rig's effects)",
+            found="no --model",
+            where="synth",
+        )
+
+
+def _left_out(count: int, limits: Limits) -> str:
+    """Return the line on tests of the grids that the rig can't do."""
+    return (
+        f"{counted(count, 'test')} left out: beyond the rig's {1e3 * limits.stroke:g} mm,"
+        f" {limits.speed:g} m/s, {limits.acceleration:.0f} m/s^2 or {1e-3 * limits.force:g} kN."
+    )
 
 
 def fraction(text: str, *, where: str) -> float:

@@ -31,7 +31,7 @@ def comparison_document(
         **document_header("comparison", seed=seed, title=title,
                           content_hash=hashes.pop() if len(hashes) == 1 else ""),
         "sides": [_side(s) for s in sides],
-        "same_structures": _same(sides),
+        "same_structures": _same_structures(sides),
         "quantities": [d.to_dict() for d in found],
         "errors": [_errors(s) for s in simulations],
         "findings": _findings(sides, found),
@@ -58,7 +58,7 @@ def _side(side: Side) -> dict[str, Any]:
     }
 
 
-def _same(sides: Sequence[Side]) -> bool:
+def _same_structures(sides: Sequence[Side]) -> bool:
     return len({tuple(b.structure for b in s.bands) for s in sides}) == 1
 
 

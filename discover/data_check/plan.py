@@ -19,7 +19,7 @@ from models.checks import Array
 from models.constitutive import FittedTerm
 from models.motion import sine_motion
 
-_SAMPLES = 128
+_SAMPLES = 128  # of one cycle
 _LINES = 8  # of a test that is added
 
 

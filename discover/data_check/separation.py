@@ -17,7 +17,7 @@ from discover.data_check.nominal import TELLING, Structure, contains, structures
 from discover.data_check.plan import Plan
 from discover.data_check.result import ExpectedGap, Inseparable, Pair
 
-_SAME_FREQUENCY = 0.02
+_SAME_FREQUENCY = 0.02  # of it: frequencies that differ less count as one
 
 
 def expected_pairs(plan: Plan) -> tuple[Pair, ...]:

@@ -47,12 +47,12 @@ def size_findings(campaign: Campaign, checks: Sequence[RecordCheck]) -> list[Fin
     found = []
     for index, record in enumerate(campaign.records):
         own, other = amplitudes[index], _others(amplitudes, index)
-        if own and other and _odd(own / other):
+        if own and other and _out_of_proportion(own / other):
             sizes = f"is {1e3 * own:.3g} mm", f"{1e3 * other:.3g} mm"
             text = "its displacement amplitude " + _compared(*sizes, own / other, unit="m")
             found.append(Finding("warning", text, record.file))
         own, other = forces[index], _others(forces, index)
-        if own and other and _odd_by_motion(per_motion, index, ratio=own / other):
+        if own and other and _force_out_of_proportion(per_motion, index, ratio=own / other):
             sizes = f"is {own:.3g} N root mean square", f"{other:.3g} N"
             text = "its force " + _compared(*sizes, own / other, unit="N")
             found.append(Finding("warning", text, record.file))
@@ -85,19 +85,21 @@ def _others(values: Sequence[float | None], index: int) -> float | None:
     return min(middle, key=lambda value: abs(math.log(own / value)))
 
 
-def _odd(ratio: float) -> bool:
+def _out_of_proportion(ratio: float) -> bool:
     return not 1.0 / FACTOR <= ratio <= FACTOR
 
 
-def _odd_by_motion(
+def _force_out_of_proportion(
     per_motion: Sequence[Sequence[float | None]], index: int, *, ratio: float
 ) -> bool:
     """Return whether `ratio` is odd, and force over speed and acceleration, if known, as it is."""
-    if not _odd(ratio):
+    if not _out_of_proportion(ratio):
         return False
     for values in per_motion:
         own, other = values[index], _others(values, index)
-        if own and other and not (_odd(own / other) and (own > other) == (ratio > 1.0)):
+        if not own or not other:
+            continue
+        if not _out_of_proportion(own / other) or (own > other) != (ratio > 1.0):
             return False
     return True
 

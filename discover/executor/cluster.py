@@ -33,22 +33,22 @@ class Cluster:
     ) -> Iterator[tuple[int, R | Lost]]:
         """Yield each item's place and result as they are done; see `Executor`."""
         killed = []
-        for place, result in self._once(function, items, range(len(items))):
+        for place, result in self._submitted(function, items, range(len(items))):
             if isinstance(result, Lost):
                 killed.append(place)
             else:
                 yield place, result
         for place in sorted(killed):  # who is killed again, alone, has taken its worker down itself
-            yield from self._once(function, items, [place])
+            yield from self._submitted(function, items, [place])
 
-    def _once(
+    def _submitted(
         self, function: Callable[[T], R], items: Sequence[T], places: Sequence[int]
     ) -> Iterator[tuple[int, R | Lost]]:
         """Yield places and results as they are done; lost are all that were on dying workers."""
         from distributed import KilledWorker, as_completed
 
         futures = {
-            self.client.submit(_alone, function, items[place], pure=False): place
+            self.client.submit(_one_at_a_time_here, function, items[place], pure=False): place
             for place in places
         }
         with self.client.as_current():
@@ -67,16 +67,16 @@ class Cluster:
                     completed.add(future)
                     continue
                 else:
-                    raise _gone(self.address)
+                    raise _scheduler_gone(self.address)
                 del futures[future]  # the cluster forgets it
         except (OSError, TimeoutError, asyncio.CancelledError):
-            raise _gone(self.address) from None
+            raise _scheduler_gone(self.address) from None
         finally:
             if futures and self.client.status == "running":
                 self.client.cancel(list(futures))
 
 
-def _alone(function: Callable[[T], R], item: T) -> R:
+def _one_at_a_time_here(function: Callable[[T], R], item: T) -> R:
     """Do an item on a worker: pictures and limits on threads are the whole process's."""
     with _one_at_a_time, threadpool_limits(1):
         return function(item)
@@ -143,7 +143,7 @@ def _version() -> str:
     return __version__
 
 
-def _gone(address: str) -> InputError:
+def _scheduler_gone(address: str) -> InputError:
     return InputError(
         "scheduler", expected="there until the work is done", found="gone",
         where=f"--cluster {address}",

@@ -15,7 +15,7 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 
-_SHOWN = 400
+_SHOWN = 400  # points of a shape at most
 _UNITS = {"velocity": "m/s", "displacement": "m", "acceleration": "m/s^2", "time": "s"}
 _SCATTERS = 4.0  # times its range, that a force varies by along what it does not follow
 

@@ -43,7 +43,22 @@ def findings_of(
     noise : float
         The records' noise floor, %.
     """
-    result = [Finding("note", text)]
+    return (
+        Finding("note", text),
+        *_about_start(baseline, found),
+        *_wrong_signs(baseline, found.refitted),
+        *_refused_or_dropped(found),
+        *_doubts(rounds),
+        *_noisy(found.final),
+        *_spikes(found.final, noise),
+        *_not_met(found.final, noise),
+        *_unexplained(found, noise),
+    )
+
+
+def _about_start(baseline: Baseline, found: Search) -> list[Finding]:
+    """Return how the motion was made where it is not measured, and what refitting alone gives."""
+    result = []
     for r in baseline.rows:
         if r.observation.phase_fitted:
             result.append(
@@ -63,7 +78,12 @@ def findings_of(
                 f" to {gaps[1]:.3g} %; the rounds start from there. `--fixed` holds them.",
             )
         )
-    result += _wrong_signs(baseline, found.refitted)
+    return result
+
+
+def _refused_or_dropped(found: Search) -> list[Finding]:
+    """Return which effects were refused, or dropped for a later one."""
+    result = []
     if found.rejected is not None:
         result.append(
             Finding(
@@ -80,10 +100,12 @@ def findings_of(
                         " named in an earlier round, was made superfluous by"
                         f" {short_name(entry.effect)} and dropped.")
             )
-    result += _doubts(rounds)
-    result += _noisy(found.final)
-    result += _spikes(found.final, noise)
-    result += _not_met(found.final, noise)
+    return result
+
+
+def _unexplained(found: Search, noise: float) -> list[Finding]:
+    """Return what is left at the end that no effect of the list explains."""
+    result = []
     over = found.final.gap / max(noise, 1e-300)
     if not found.rounds and found.final.assessed.quiet and over > _NOT_THE_LINES:
         result.append(
@@ -102,7 +124,7 @@ def findings_of(
                 " helps more than a smooth remainder does.",
             )
         )
-    return tuple(result)
+    return result
 
 
 def _named(identifier: str) -> str:

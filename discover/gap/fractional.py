@@ -12,7 +12,7 @@ from models.device import Device
 
 FRACTIONAL = ("foim", "sfoim")
 FOIM_TERMS = ("fractional-derivative", "coulomb-friction")
-_DEAN = 100.0
+_DEAN = 100.0  # the paper's criterion, in its convention: where sfoim changes
 
 Fit = Callable[[Sequence[RecordRows]], ForceModel]
 Along = Callable[[Observation, SegmentedModel], float]

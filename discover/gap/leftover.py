@@ -13,7 +13,7 @@ from models.constitutive import ForceModel
 
 _FEWEST = 5  # sine tests from which growth and memory can be told
 _SPAN = 1.5  # ratio that a plan has to cover for a power of it
-_DEGREE = 5
+_DEGREE = 5  # of the polynomial in displacement and velocity
 _FUNCTION, _NO_FUNCTION = 0.85, 0.6  # shares explained by displacement and velocity alone
 _MAJOR = 0.15  # of the energy, from which a harmonic is listed
 

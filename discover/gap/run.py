@@ -30,8 +30,8 @@ from models.terms import TERMS
 
 AGREES, UNKNOWN = "agrees", "unknown"
 _STATED = 0.97  # of the probability that the alternatives add up to
-_LEAST_STATED = 0.02
-_MOST_STATED = 6
+_LEAST_STATED = 0.02  # probability from which an alternative is listed
+_MOST_STATED = 6  # alternatives that are listed
 _EQUAL = 0.2  # of the named effect's probability: then they can't be told apart
 _SHAPE_HOLDS = 0.1  # of an effect's size, that its shape may be wrong by
 

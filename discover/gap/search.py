@@ -15,7 +15,7 @@ from discover.posterior.model import Composite
 from discover.rows import Accuracy, accuracy, pooled_percent
 from models.constitutive import FittedTerm, ForceModel
 
-MOST_ROUNDS = 6
+MOST_ROUNDS = 6  # effects that one search names
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ from discover.rows import RecordRows, force_at_samples, force_rows
 from models.checks import Array, Indices
 from models.constitutive import ForceModel
 
-_CELLS = 12
-_REVERSAL = 0.05
-_PHASES = 64
+_CELLS = 12  # of the map of the misfit, along each side
+_REVERSAL = 0.05  # of the stroke, at each of its ends
+_PHASES = 64  # parts of a cycle
 
 
 @dataclass(frozen=True)

@@ -268,16 +268,16 @@ class InerterLibrary(BaseFeatureLibrary):  # type: ignore[misc]
                 "force", expected=f"of lengths {[len(m) for m in motions]}",
                 found=f"{[len(f) for f in forces]}", where=where,
             )  # fmt: skip
-        speeds = [f[:, 0] for f in self._only(motions, ("viscous-damping",), (), ())]
+        speeds = [f[:, 0] for f in self._features_of(motions, ("viscous-damping",), (), ())]
         rest = tuple(t for t in self.terms if t != _FRICTION)
         others = [np.empty((len(m), 0)) for m in motions]
         if rest or len(self.orders) or len(self.exponents):
-            others = self._only(motions, rest, self.orders, self.exponents)
+            others = self._features_of(motions, rest, self.orders, self.exponents)
         found = fitted_transition(speeds, others, np.concatenate(forces))
         result: InerterLibrary = clone(self).set_params(transition_speed=found)
         return result
 
-    def _only(
+    def _features_of(
         self, motions: list[Array], terms: Sequence[str | Column], orders: Sequence[float],
         exponents: Sequence[float],
     ) -> list[Array]:

@@ -10,6 +10,7 @@ from scipy.special import gammaincinv
 
 from discover.motion_fit.band_noise import band_noise
 from discover.motion_fit.noise import power_density
+from discover.motion_fit.noise_spectrum import NoiseSpectrum
 from discover.motion_fit.observation import Lines, Observation, Window
 from discover.records import Record
 from models.checks import Array, InputError
@@ -18,13 +19,13 @@ from models.motion import Motion
 
 _SIGNAL_TO_NOISE = 1000.0  # of the displacement's power, at the edge of the excited band
 EDGE = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
-_NYQUIST_SHARE = 0.95
-_FEWEST_LINES = 8
-RELATIVE_FLOOR = 1e-6
-_TAPER = 0.1
-_EDGE_PERIODS = 4.0
-_LINES_PER_WINDOW = 40
-_MAX_WINDOWS = 16
+_NYQUIST_SHARE = 0.95  # of the Nyquist frequency, where the band ends at the latest
+_FEWEST_LINES = 8  # of the spectrum, that the band holds at least
+RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights stay finite
+_TAPER = 0.1  # of a window, over which it crosses into its neighbour
+_EDGE_PERIODS = 4.0  # of the band's end, left out at either end of a record
+_LINES_PER_WINDOW = 40  # about, below the end of the band
+_MAX_WINDOWS = 16  # of one record
 
 
 def smooth(density: Array, averaged: int = 1) -> Array:
@@ -143,6 +144,42 @@ def _projection(inside: slice, taper: Array, count: int) -> Callable[[Array], Li
     return project
 
 
+def _window(
+    piece: tuple[int, Array],
+    motion: Motion,
+    x: Array,
+    force: Array,
+    noise: NoiseSpectrum,
+    *,
+    step: float,
+    cutoff: float,
+    mass: float,
+) -> Window:
+    """Return the lines of one piece, its start and taper; `mass` is that of all squared tapers."""
+    start, taper = piece
+    size = taper.size
+    inside = slice(start, start + size)
+    count = int(np.floor(cutoff * size * step)) + 1
+    project = _projection(inside, taper, count)
+    frequencies = np.arange(count, dtype=np.float64) / (size * step)
+    density = noise.at(np.maximum(frequencies, frequencies[1]))
+    mean_power = float(np.mean(force**2))
+    variance = np.maximum(density / (2.0 * size * step), RELATIVE_FLOOR**2 * mean_power)
+    v_rms, x_rms = float(np.std(motion.velocity[inside])), float(np.std(x[inside]))
+    return Window(
+        omega=2.0 * np.pi * frequencies,
+        force=project(force),
+        variance=variance,
+        project=project,
+        frequency=v_rms / (2.0 * np.pi * x_rms) if x_rms else 0.0,
+        amplitude=float(np.sqrt(2.0) * x_rms),
+        speed=float(np.sqrt(2.0) * v_rms),
+        rest=0.0,
+        noise_power=float(2.0 * np.sum(variance)),
+        share=float(np.sum(taper**2)) / mass,
+    )
+
+
 def observe_band(record: Record, usable: slice, kind: str) -> Observation:
     """Return the observation of a sweep, a random record, an earthquake or a trajectory.
 
@@ -175,33 +212,11 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         found = band_noise(motion, force, step, cutoff, inner)
         follows = found.follows
     noise = found.spectrum
-    velocity = motion.velocity
     mass = sum(float(np.sum(taper**2)) for _, taper in pieces)
-    mean_power = float(np.mean(force**2))
-    windows = []
-    for start, taper in pieces:
-        size = taper.size
-        inside = slice(start, start + size)
-        count = int(np.floor(cutoff * size * step)) + 1
-        project = _projection(inside, taper, count)
-        frequencies = np.arange(count, dtype=np.float64) / (size * step)
-        density = noise.at(np.maximum(frequencies, frequencies[1]))
-        variance = np.maximum(density / (2.0 * size * step), RELATIVE_FLOOR**2 * mean_power)
-        v_rms, x_rms = float(np.std(velocity[inside])), float(np.std(x[inside]))
-        windows.append(
-            Window(
-                omega=2.0 * np.pi * frequencies,
-                force=project(force),
-                variance=variance,
-                project=project,
-                frequency=v_rms / (2.0 * np.pi * x_rms) if x_rms else 0.0,
-                amplitude=float(np.sqrt(2.0) * x_rms),
-                speed=float(np.sqrt(2.0) * v_rms),
-                rest=0.0,
-                noise_power=float(2.0 * np.sum(variance)),
-                share=float(np.sum(taper**2)) / mass,
-            )
-        )
+    windows = [
+        _window(piece, motion, x, force, noise, step=step, cutoff=cutoff, mass=mass)
+        for piece in pieces
+    ]
     fade = max(int(np.ceil(1.0 / (cutoff * step))), 1)  # over which the lines' windows open
     shown = slice(inner.start + fade, inner.stop - fade)
 

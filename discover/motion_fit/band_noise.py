@@ -29,9 +29,9 @@ _ORDERS = (0.25, 0.5, 0.75, 1.25, 1.5, 1.75)
 _SCALES = np.geomspace(3e-3, 1.0, 6)
 """Of the root mean square speed and displacement, over which friction may reverse."""
 _SLOW = 3  # polynomials of time that follow a drift
-_FEWEST_LINES = 12
+_FEWEST_LINES = 12  # of the spectrum, from which noise can be told
 _LONG = 200_000  # samples, from which it matters how fast a length transforms
-_HALF_OCTAVE = float(np.sqrt(2.0))
+_HALF_OCTAVE = float(np.sqrt(2.0))  # ratio of frequencies
 
 
 @dataclass(frozen=True)
@@ -137,8 +137,8 @@ def _functions_of(motion: Motion) -> Iterator[Array]:
     yield np.tanh(speed / _SCALES[0]) * np.abs(push)
     yield from (push, _unit(np.gradient(a)))
     yield from (_unit(c) for c in motion.differentiate(np.array(_ORDERS)))
-    late = np.linspace(-1.0, 1.0, x.size)
-    yield from np.polynomial.legendre.legvander(late, _SLOW).T[1:]
+    centred_time = np.linspace(-1.0, 1.0, x.size)
+    yield from np.polynomial.legendre.legvander(centred_time, _SLOW).T[1:]
 
 
 def _unit(column: Array) -> Array:

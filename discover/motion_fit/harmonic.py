@@ -22,7 +22,7 @@ from models.motion import Motion, harmonic_motion
 HARMONICS = 31  # of the force; friction's fall off as 1/k, so further ones decide nothing
 GRID = 1024  # points of the one cycle kept for steady-state simulation
 RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights stay finite
-_PHASES = 360
+_PHASES = 360  # of a motion that is not measured, tried at even steps
 _REVERSAL = 3e-3  # of the speed amplitude
 _PIECE = 2**16  # samples
 BoolArray = NDArray[np.bool_]
@@ -56,6 +56,28 @@ def moving(at: Moments, frequency: float, displacement: Lines | None) -> BoolArr
     cycle = harmonic_series(np.arange(GRID) / (GRID * frequency), frequency, phasors)
     velocity = Harmonics(at, frequency).series(phasors)
     return np.asarray(np.abs(velocity) > _REVERSAL * float(np.abs(cycle).max()))
+
+
+def velocity_phase(displacement: Lines | None) -> float:
+    """Return the phase (rad) of the velocity's fundamental, of the displacement's phasors.
+
+    A motion that is not known (None) has none: 0.
+    """
+    return 0.0 if displacement is None else float(np.angle(displacement[1])) + 0.5 * np.pi
+
+
+def _resolved_harmonics(samples: int, cycles: float, file: str) -> int:
+    """Return how many harmonics the sampling resolves; refuse too few cycles, and none."""
+    if cycles < 1.4:
+        raise InputError(
+            "usable cycles", expected="at least 1.5", found=f"{cycles:.2g}", where=file
+        )
+    count = int(min(HARMONICS, 0.4 * samples / cycles, (samples - 4) // 3))
+    if count < 1:
+        raise InputError(
+            "sampling", expected="above 2.5 times the frequency", found="less", where=file
+        )
+    return count
 
 
 def observe_sine(
@@ -94,18 +116,7 @@ def observe_sine(
     """
     time, force = record.time[usable], record.force[usable]
     duration = float(time[-1] - time[0]) * time.size / (time.size - 1)
-    if duration * frequency < 1.4:
-        raise InputError(
-            "usable cycles",
-            expected="at least 1.5",
-            found=f"{duration * frequency:.2g}",
-            where=record.file,
-        )
-    count = int(min(HARMONICS, 0.4 * time.size / (duration * frequency), (time.size - 4) // 3))
-    if count < 1:
-        raise InputError(
-            "sampling", expected="above 2.5 times the frequency", found="less", where=record.file
-        )
+    count = _resolved_harmonics(time.size, duration * frequency, record.file)
     middle = float(time.mean()) if duration * frequency > 2.0 else None
     every = moments(time)
     clear = moving(every, frequency, displacement)
@@ -115,15 +126,12 @@ def observe_sine(
     residual = np.zeros(time.size)
     residual[clear] = force[clear] - fit.fitted(solution)
     time, force = fit.time, force[clear]
-    drift = 0.0 if middle is None else float(solution[-1])
     (lines,) = lines_of(solution[None], count)
     multiples: Array = frequency * np.arange(count + 1, dtype=np.float64)
     if record.uniform:
         density = density_between_lines(residual, record.step, frequency, multiples)
-        advance = 0.0 if displacement is None else float(np.angle(displacement[1])) + 0.5 * np.pi
-        spectrum = noise_spectrum(
-            time, force, frequency, record.step, 2.0 * np.pi * frequency * time + advance
-        )
+        phase = 2.0 * np.pi * frequency * time + velocity_phase(displacement)
+        spectrum = noise_spectrum(time, force, frequency, record.step, phase)
         noise = float(np.sqrt(spectrum.power))
     else:
         spectrum = None
@@ -133,27 +141,16 @@ def observe_sine(
     power = float(np.sum(np.abs(lines) ** 2))
     variance = np.maximum(density / (2.0 * duration), RELATIVE_FLOOR**2 * power)
     fitted_phase = displacement is None
-    harmonic = np.arange(count + 1)
     if displacement is None:
         displacement = _fit_phase(record, lines, fit.lines, at, frequency, variance)
-    turn = np.exp(-1j * harmonic * (np.angle(displacement[1]) + 0.5 * np.pi))
-    motion = _motion_at(at, frequency, displacement)
-    speed = 2.0 * np.pi * frequency * float(abs(displacement[1]))
-    window = Window(
-        omega=2.0 * np.pi * multiples,
-        force=lines * turn,
-        variance=variance,
-        project=lambda columns: fit.lines(columns) * turn,
-        frequency=frequency,
-        amplitude=float(abs(displacement[1])),
-        speed=speed,
-        rest=float(residual @ residual / time.size),
-        noise_power=noise**2,
-    )
+    window = _window(
+        displacement, frequency, lines, variance, fit.lines,
+        rest=float(residual @ residual / time.size), noise_power=noise**2,
+    )  # fmt: skip
     return Observation(
         record=record,
         kind="sine",
-        motion=motion,
+        motion=_motion_at(at, frequency, displacement),
         cycle=harmonic_motion(displacement, frequency, samples=GRID),
         at=lambda time: _motion_at(moments(time), frequency, displacement),
         windows=(window,),
@@ -165,9 +162,35 @@ def observe_sine(
         noise=spectrum,
         cutoff=None,
         phase_fitted=fitted_phase,
-        drift=drift,
+        drift=0.0 if middle is None else float(solution[-1]),
         usable=usable,
         sums=_sums(time, force, frequency),
+    )
+
+
+def _window(
+    displacement: Lines,
+    frequency: float,
+    force: Lines,
+    variance: Array,
+    project: Callable[[Array], Lines],
+    *,
+    rest: float,
+    noise_power: float,
+) -> Window:
+    """Return the lines with their phases counted from the motion's own."""
+    turn = np.exp(-1j * np.arange(force.size) * velocity_phase(displacement))
+    amplitude = float(abs(displacement[1]))
+    return Window(
+        omega=2.0 * np.pi * (frequency * np.arange(force.size, dtype=np.float64)),
+        force=force * turn,
+        variance=variance,
+        project=lambda columns: project(columns) * turn,
+        frequency=frequency,
+        amplitude=amplitude,
+        speed=2.0 * np.pi * frequency * amplitude,
+        rest=rest,
+        noise_power=noise_power,
     )
 
 

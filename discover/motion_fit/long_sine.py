@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from discover.motion_fit.cycle_sums import cycle_sums
-from discover.motion_fit.harmonic import RELATIVE_FLOOR, moving, observe_sine
+from discover.motion_fit.harmonic import RELATIVE_FLOOR, moving, observe_sine, velocity_phase
 from discover.motion_fit.harmonic_lines import LineSums, lines_of
 from discover.motion_fit.observation import Observation
 from discover.records import LongRecord, Piece, Record
@@ -71,7 +71,7 @@ def observe_long_sine(
     sums = cycle_sums(clear(), fit.frequency, float(first_part.time[0]), last)
     solution, left = fitted.solve()
     (lines,) = lines_of(solution[None], count)
-    turn = np.exp(-1j * np.arange(count + 1) * (np.angle(fit.coefficients[1]) + 0.5 * np.pi))
+    turn = np.exp(-1j * np.arange(count + 1) * velocity_phase(fit.coefficients))
     held = float(first_part.time[-1] - first_part.time[0])
     floor = RELATIVE_FLOOR**2 * float(np.sum(np.abs(lines) ** 2))
     window = replace(

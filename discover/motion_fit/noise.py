@@ -8,7 +8,7 @@ from models.checks import Array
 
 _GAPS = 3.0  # between harmonics, to either side of a line
 _OCTAVE = 0.3  # of a line's frequency, to either side of it
-_MEDIAN_EFFICIENCY = 0.6
+_MEDIAN_EFFICIENCY = 0.6  # of a median's freedom, against that of a mean of as many bins
 _FEWEST_BINS = 4.0  # between harmonics, for a gap to be there
 
 
@@ -78,11 +78,11 @@ def density_between_lines(
         low = max(min(low, clear.size - 5), 0)
         some = density[clear[low : max(high, low + 5)]]
         result[index] = float(np.median(some)) / _median_of_exponentials(some.size)
-        result[index] *= _doubt(some.size)
+        result[index] *= _median_correction(some.size)
     return result
 
 
-def _doubt(bins: int) -> float:
+def _median_correction(bins: int) -> float:
     """Return the mean of the true over the estimated variance, from the median of few bins.
 
     A weight that is too large by chance would count as evidence.

@@ -11,17 +11,17 @@ from discover.motion_fit.repetition import Unrepeated, unrepeated
 from discover.sine_fit import harmonic_design
 from models.checks import Array
 
-_MOST_HARMONICS = 100
-_SLOW = 3
-_FEWEST_BINS = 14
-_FEWEST_AT_END = 3
-_BINS = 48
-_SLOPE_FROM = 8
-_STEEPEST = 2.0
-_CLEAR = 1.6
-_LEAST_LEFT = 0.2
-_REVERSALS = (0.01, 0.03, 0.1)
-_LEAST = 1e-300
+_MOST_HARMONICS = 100  # of the test, that are taken out
+_SLOW = 3  # polynomials of time that follow a drift
+_FEWEST_BINS = 14  # in one range of frequencies
+_FEWEST_AT_END = 3  # in the last of them
+_BINS = 48  # ranges of frequency, even in the logarithm
+_SLOPE_FROM = 8  # lowest ranges, which tell the rise to low frequencies
+_STEEPEST = 2.0  # power of the frequency, with which noise may rise to low ones
+_CLEAR = 1.6  # bins from a harmonic: nearer ones are left out
+_LEAST_LEFT = 0.2  # of the noise's power, after a harmonic for every cycle was taken out
+_REVERSALS = (0.01, 0.03, 0.1)  # of the greatest speed: ranges over which friction reverses
+_LEAST = 1e-300  # N^2/Hz, so that logarithms stay finite
 _LINE = 15.0  # times the level: noise alone is above it once in three million bins
 
 
@@ -106,8 +106,8 @@ def _between_harmonics(
     per_cycle = 1.0 / (step * frequency)
     count = int(min(_MOST_HARMONICS, 0.45 * per_cycle, (time.size - 8) // 4))
     design = harmonic_design(time, frequency, count)[:, : 2 * count + 1]
-    late = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
-    trend = np.polynomial.legendre.legvander(late, _SLOW)[:, 1:]
+    centred_time = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
+    trend = np.polynomial.legendre.legvander(centred_time, _SLOW)[:, 1:]
     whole = np.concatenate([design, trend, _jumps(phase)], axis=1)
     gram = whole.T @ whole + 1e-9 * time.size * np.eye(whole.shape[1])
     left = force - whole @ np.linalg.solve(gram, whole.T @ force)

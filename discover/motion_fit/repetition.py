@@ -19,16 +19,16 @@ from discover.sine_fit import harmonic_design, moments
 from models.checks import Array
 from models.compiled import compiled
 
-FEWEST_CYCLES = 2.5
-_ENOUGH_CYCLES = 6.0
-_FEWEST_SAMPLES, _MOST_SAMPLES = 32, 60_000
-_FEWEST_BINS = 5
+FEWEST_CYCLES = 2.5  # that can be compared
+_ENOUGH_CYCLES = 6.0  # of a long record, that are compared
+_FEWEST_SAMPLES, _MOST_SAMPLES = 32, 60_000  # that are compared
+_FEWEST_BINS = 5  # from which a level of noise can be told
 _HALF_WIDTH = 0.75  # of a sample's share of the cycle, to either side
-_LEAST_WEIGHT = 1e-3
+_LEAST_WEIGHT = 1e-3  # of a neighbour in phase, against one at the same phase
 _SLOPED = 1e-3  # of the weights' square, by which their phases have to differ for a slope
-_HARMONICS = 31
+_HARMONICS = 31  # lowest of the force, taken out before cycles are compared
 _RESOLVED = 0.12  # of the sampling rate: what is slower is smooth over one sample
-_SLOW = 3
+_SLOW = 3  # orders of slow change at most
 _CYCLES_EACH = 3.0  # for every order of slow change
 _BESIDE = 2.0  # harmonics beyond those that change, that see it
 _MANY_CYCLES = 20.0  # of which slow changes take next to nothing
@@ -44,7 +44,7 @@ _PROBED = 48  # samples at which the comparison's response is evaluated
 _NEAREST = 8  # samples in phase, to either side, that one is compared with at most
 _LEAST_GAIN = 0.35  # of the noise's power, that has to be left beside a harmonic
 _CLEAR = 1.5  # bins from a harmonic: nearer ones also see what changes it slowly
-_ENOUGH_BINS = 30
+_ENOUGH_BINS = 30  # clear of harmonics, with which those beside them are not needed
 Kept = NDArray[np.bool_]
 
 
@@ -144,9 +144,9 @@ def _changes(
     The mean may change, and the size of what repeats and of its lowest harmonics: by no more
     than a straight line where the cycles are few, as they would take in the noise.
     """
-    late = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
+    centred_time = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
     order = int(np.clip(cycles // _CYCLES_EACH, 1, _SLOW))
-    slow = np.polynomial.legendre.legvander(late, order)[:, 1:]
+    slow = np.polynomial.legendre.legvander(centred_time, order)[:, 1:]
     lowest = harmonic_design(time, frequency, _changing(time.size))
     carriers = np.column_stack([lowest, repeated])
     changes = (slow[:, :, None] * carriers[:, None, :]).reshape(time.size, -1)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-from discover.figure_data import GapFigureData, ShownRecord
+from discover.figure_data import GapFigureData
 from discover.plots.gap import (
     contest,
     effect_shape,
@@ -13,13 +13,11 @@ from discover.plots.gap import (
     gap_by_round,
     misfit_surface,
 )
-from discover.plots.loops import record_curves
 from discover.plots.picture import Picture, picture
-from discover.plots.representative import representative
-from models.checks import one_of
+from discover.plots.record_plots import RecordPlots
 
 
-class GapPlots:
+class GapPlots(RecordPlots):
     """What ``gap.plot`` offers: every method returns a `Picture`.
 
     Parameters
@@ -30,14 +28,12 @@ class GapPlots:
         What the pictures need besides.
     """
 
+    _answer = "a gap"
+
     def __init__(self, document: Mapping[str, Any], data: GapFigureData) -> None:
+        super().__init__(data.records)
         self._document = document
         self._data = data
-
-    def __repr__(self) -> str:
-        """Return the names of the pictures."""
-        names = [f"{n}()" for n in vars(GapPlots) if not n.startswith("_")]
-        return f"<Pictures of a gap: {', '.join(names)}>"
 
     def records(self) -> Picture:
         """Return every record's gap before and after, beside its noise."""
@@ -60,18 +56,3 @@ class GapPlots:
     def surface(self) -> Picture:
         """Return the baseline's misfit over displacement and velocity."""
         return picture("surface", misfit_surface(self._data))
-
-    def loops(self, *files: str) -> Picture:
-        """Return force over time, displacement and velocity: measured, mended model, baseline.
-
-        Parameters
-        ----------
-        *files : str
-            Names of records; a few that show the most where none is given.
-        """
-        known = {r.file: r for r in self._data.records}
-        chosen: Sequence[ShownRecord] = representative(self._data.records)
-        if files:
-            chosen = [known[one_of("record", f, sorted(known))] for f in files]
-        drawn = [record_curves(r, name=f"loops-{i}") for i, r in enumerate(chosen, start=1)]
-        return picture("loops", *drawn)

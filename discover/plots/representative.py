@@ -31,16 +31,17 @@ def representative(records: Sequence[ShownRecord], *, most: int = 4) -> list[Sho
             take(inside[0])
             take(inside[-1])
     take(max((r for r in with_force if r.held_out), key=top_speed, default=None))
-    take(max((r for r in with_force if _miss(r) is not None), key=_excess, default=None))
+    with_error = (r for r in with_force if _relative_error(r) is not None)
+    take(max(with_error, key=_error_over_noise, default=None))
     for record in sorted(with_force, key=top_speed, reverse=True):
         take(record)
     position = {id(r): i for i, r in enumerate(records)}
     return sorted(chosen, key=lambda r: (top_speed(r), position[id(r)]))
 
 
-def _miss(record: ShownRecord) -> float | None:
+def _relative_error(record: ShownRecord) -> float | None:
     return record.errors_percent[0] if record.errors_percent else None
 
 
-def _excess(record: ShownRecord) -> float:
-    return (_miss(record) or 0.0) - (record.noise_percent or 0.0)
+def _error_over_noise(record: ShownRecord) -> float:
+    return (_relative_error(record) or 0.0) - (record.noise_percent or 0.0)

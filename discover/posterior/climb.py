@@ -15,8 +15,8 @@ STEP = 2.0
 _LEAST, _MOST = -12, 0  # powers of STEP, of the force
 _BETTER = 0.05  # nats, by which a move has to gain
 _BEGIN = (-8, -8, -10)  # of the remainder, own friction, each independent error
-_STRIDES = (4, 1)
-_TOGETHER = sorted(
+_STRIDES = (4, 1)  # powers of STEP moved at once: coarse first, then fine
+_TOGETHER = sorted(  # moves of one, two or three sizes by a power up or down, fewest sizes first
     (m for m in product((-1, 0, 1), repeat=3) if any(m)), key=lambda m: sum(map(abs, m))
 )
 

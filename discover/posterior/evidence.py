@@ -9,8 +9,8 @@ from scipy.special import log_ndtr
 
 from models.checks import Array, Indices
 
-_LOG_2 = float(np.log(2.0))
-_LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))
+_LOG_2 = float(np.log(2.0))  # nats: a coefficient of known sign has half the places
+_LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))  # of the normal density
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ from discover.posterior.space import Part, Space
 from models.checks import Array
 from models.terms import Scales
 
-_ITERATIONS = 12
+_ITERATIONS = 12  # steps of the climb in shape parameters at most
 _ENOUGH = 0.02  # nats, of a step's gain
-_HALVINGS = 6
+_HALVINGS = 6  # times at most that a step which gains nothing is shortened
 _STRIDE = 0.5  # of a shape parameter's value, or of its range, in one step at most
 
 

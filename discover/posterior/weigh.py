@@ -17,7 +17,7 @@ from discover.posterior.space import Part, Space
 from models.checks import Array, Indices
 from models.constitutive import FittedTerm
 
-_LOG_2 = float(np.log(2.0))
+_LOG_2 = float(np.log(2.0))  # nats: a coefficient of known sign has half the places
 _TOGETHER = 64  # columns of trials that are weighed at once
 
 

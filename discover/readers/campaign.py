@@ -8,7 +8,6 @@ import shlex
 import stat
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -34,8 +33,8 @@ from models.checks import InputError, InputErrors, nearest, printable, shown
 
 CAMPAIGN_FILE = "campaign.toml"
 _TABLES = ("title", "device", "columns", "units", "records", "rig", "system")
-_LONGEST_TITLE = 400
-_MOST_ERRORS = 20
+_LONGEST_TITLE = 400  # characters
+_MOST_ERRORS = 20  # that are told of one campaign
 _PIECE = 2**20  # bytes
 
 
@@ -269,7 +268,7 @@ def _path_of(folder: Path, name: str, *, where: str, hint: bool = True) -> Path:
             return target
         found = _kind(target) if inside else "outside of it"
         if hint and inside and not target.exists():
-            found += nearest(name, _names(root, root.stat().st_mtime_ns))
+            found += nearest(name, _names(root))
     except OSError as error:
         found = error.strerror or "an unreadable file"
     except (ValueError, RuntimeError) as error:  # a zero byte in the name, a loop of links
@@ -294,9 +293,8 @@ def _kind(target: Path, file: str = "a file") -> str:
     return next((text for test, text in kinds if test(mode)), "a device")
 
 
-@lru_cache(maxsize=1)
-def _names(root: Path, changed: int) -> tuple[str, ...]:
-    """Return what a folder holds since it `changed` (ns): listed once for thousands of records."""
+def _names(root: Path) -> tuple[str, ...]:
+    """Return what a folder holds."""
     with os.scandir(root) as items:
         return tuple(item.name for item in items)
 

@@ -32,8 +32,8 @@ def chosen_sources(book: Book, entry: Entry, names: Mapping[str, str]) -> list[S
         Where the file has no such part, or several could be meant.
     """
     if entry.part is None:
-        source = _only(book, entry, names)
-        return [_cut(book, source, entry)]
+        source = _only_source(book, entry, names)
+        return [_range_of(book, source, entry)]
     if entry.key != book.key:
         raise InputError(
             f"key {entry.key!r}", expected=f"{book.key!r} for a file of this kind",
@@ -46,10 +46,10 @@ def chosen_sources(book: Book, entry: Entry, names: Mapping[str, str]) -> list[S
                 book.key, expected=f"from 1 to {len(listed)}", found=shown(entry.part),
                 where=entry.file,
             )  # fmt: skip
-        return [_cut(book, book.parts[entry.part - 1], entry)]
+        return [_range_of(book, book.parts[entry.part - 1], entry)]
     wanted = entry.part.strip()
     if wanted in listed:
-        return [_cut(book, book.parts[listed.index(wanted)], entry)]
+        return [_range_of(book, book.parts[listed.index(wanted)], entry)]
     fitting = [part for part in book.parts if fnmatchcase(part.part, wanted)]
     able = [part for part in fitting if has_record(part, entry, names)] or fitting
     if not able:
@@ -57,7 +57,7 @@ def chosen_sources(book: Book, entry: Entry, names: Mapping[str, str]) -> list[S
             book.key, expected="one of " + _listed(listed),
             found=shown(entry.part) + nearest(wanted, listed), where=entry.file,
         )  # fmt: skip
-    return [_cut(book, part, entry) for part in able]
+    return [_range_of(book, part, entry) for part in able]
 
 
 def has_record(source: Source, entry: Entry, names: Mapping[str, str]) -> bool:
@@ -76,7 +76,7 @@ def has_record(source: Source, entry: Entry, names: Mapping[str, str]) -> bool:
     return True
 
 
-def _only(book: Book, entry: Entry, names: Mapping[str, str]) -> Source:
+def _only_source(book: Book, entry: Entry, names: Mapping[str, str]) -> Source:
     if len(book.parts) == 1:
         return book.parts[0]
     if book.whole is not None and has_record(book.whole, entry, names):
@@ -101,7 +101,7 @@ def _listed(names: list[str]) -> str:
     return ", ".join(shown_names) + more
 
 
-def _cut(book: Book, source: Source, entry: Entry) -> Source:
+def _range_of(book: Book, source: Source, entry: Entry) -> Source:
     if not entry.cells:
         return source
     if book.cells is None:

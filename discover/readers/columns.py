@@ -25,7 +25,7 @@ QUANTITIES = {
 }
 """The columns that a record may have, each with the kind of its unit."""
 
-_LONGEST_NAME = 80
+_LONGEST_NAME = 80  # characters of a header that are looked at
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from discover.readers.toml_text import campaign_text
 from discover.records import Finding, Record
 from models.checks import InputError, printable
 
-_QUARTER = 4
+_QUARTER = 4  # records, of which one is held out
 _NO_TIME = "no column for time among"
 
 

@@ -17,7 +17,7 @@ SURE, LIKELY, UNSURE = "sure", "likely", "unsure"
 _GUESSED = ("time", "force", "displacement", "velocity", "acceleration", "temperature")
 _NEEDED = ("time", "force", "displacement")
 _NEAR = 0.05  # of a score, within which two columns are equally likely
-_FEWEST = 16
+_FEWEST = 16  # samples, from which a guess is made by the values
 _SMALL_STROKE = 0.3  # below it metres, from it on millimetres: of what laboratories write
 _COARSE_STEP = 0.3  # from it on milliseconds
 
@@ -92,7 +92,7 @@ def _stated_unit(source: Source, index: int) -> str | None:
     return split_header(source.headers[index])[1] or source.units.get(index)
 
 
-def _fits(unit: str, quantity: str) -> bool:
+def _unit_fits(unit: str, quantity: str) -> bool:
     try:
         check_unit(unit, QUANTITIES[quantity], name=quantity, where="")
     except InputError:
@@ -105,7 +105,7 @@ def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
     scores: dict[int, tuple[float, float, bool]] = {}
     for index, header in enumerate(source.headers):
         unit = _stated_unit(source, index)
-        fitting = unit is not None and _fits(unit, quantity)
+        fitting = unit is not None and _unit_fits(unit, quantity)
         if index in taken or (unit is not None and is_unit(unit) and not fitting):
             continue
         name = name_score(split_header(header)[0], quantity)
@@ -114,7 +114,7 @@ def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
         if name > 0.0 or (fitting and quantity in _NEEDED):
             scores[index] = (name + fitting, name, fitting)
     for index in sorted(scores, key=lambda i: -scores[i][0]):
-        if quantity == "time" and not _rises(source, index):
+        if quantity == "time" and not _is_rising(source, index):
             continue
         score, name, fitting = scores[index]
         near = [i for i in scores if i != index and score - scores[i][0] < _NEAR]
@@ -139,7 +139,7 @@ def _guess(
         sure = UNSURE
         reasons.append("others are as likely")
     unit = _stated_unit(source, index)
-    stated = unit is not None and _fits(unit, quantity)
+    stated = unit is not None and _unit_fits(unit, quantity)
     named = None if stated else _named_unit(header, quantity)
     return Guess(
         quantity,
@@ -156,7 +156,7 @@ def _guess(
 def _named_unit(header: str, quantity: str) -> str | None:
     """Return the unit that a header ends in after an underscore, or None."""
     name, _, last = header.strip().rpartition("_")
-    return last if name and last and _fits(last, quantity) else None
+    return last if name and last and _unit_fits(last, quantity) else None
 
 
 def _values(source: Source, index: int) -> Array | None:
@@ -169,7 +169,7 @@ def _values(source: Source, index: int) -> Array | None:
     return column if fine else None
 
 
-def _rises(source: Source, index: int) -> bool:
+def _is_rising(source: Source, index: int) -> bool:
     column = _values(source, index)
     return column is not None and bool((np.diff(column) >= 0.0).all() and column[-1] > column[0])
 
@@ -203,7 +203,7 @@ def _by_elimination(source: Source, found: Mapping[str, Guess]) -> Mapping[str, 
     }
     result: dict[str, Guess] = {}
     if "time" not in found and source.step is None:
-        even = [i for i, column in free.items() if _even(column)]
+        even = [i for i, column in free.items() if _evenly_spaced(column)]
         if even:
             result["time"] = _eliminated(source, even[0], "time", "it alone rises evenly")
             del free[even[0]]
@@ -223,7 +223,7 @@ def _eliminated(source: Source, index: int, quantity: str, why: str) -> Guess:
     return Guess(quantity, source.headers[index], sure, why, unit, unit_stated=False)
 
 
-def _even(column: Array) -> bool:
+def _evenly_spaced(column: Array) -> bool:
     steps = np.diff(column)
     return bool(steps.min() > 0.0 and steps.max() < 3.0 * np.median(steps))
 

@@ -16,7 +16,7 @@ from discover.readers.tree import Leaf, tree_book
 from models.checks import InputError
 
 _MAGIC = b"\x89HDF\r\n\x1a\n"
-_DEEPEST = 16
+_DEEPEST = 16  # groups in each other
 _UNIT_NAMES = ("units", "unit", "Units", "Unit", "UNIT", "unit_string")
 
 

@@ -7,12 +7,13 @@ import struct
 import zlib
 from dataclasses import dataclass
 
-_MATRIX, _COMPRESSED = 14, 15
+_MATRIX, _COMPRESSED = 14, 15  # data types of an element
+# Bytes of a value, by its data type.
 _SIZES = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8, 16: 1, 17: 2, 18: 4}
-_CELL, _STRUCT, _CHAR = 1, 2, 4
-_NUMERIC = range(6, 16)
-_DEEPEST = 16
-_LARGEST = 2**31
+_CELL, _STRUCT, _CHAR = 1, 2, 4  # classes of arrays
+_NUMERIC = range(6, 16)  # classes of arrays of numbers
+_DEEPEST = 16  # cells and structures in each other
+_LARGEST = 2**31  # bytes that one variable unpacks to
 
 
 @dataclass(frozen=True)

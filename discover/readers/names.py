@@ -18,8 +18,8 @@ _COMMANDS = set(
 )
 _PLAIN = str.maketrans("éèêàäöüçâîô", "eeeaaoucaio")
 _SPLIT = re.compile(r"[^a-z_]+|_(?!value)")
-_LONG = 4
-_LONGEST = 80
+_LONG = 4  # characters, from which a word also counts at the start or the end of another
+_LONGEST = 80  # characters of a header that are looked at
 
 CANONICAL, WORD, PART, LETTER = 1.0, 0.8, 0.6, 0.5
 """How much a name says: it is the quantity's own, one of its words, holds one, or is a letter."""

@@ -12,7 +12,7 @@ _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d?)-(\d\d?)[ T]|(\d\d?)[./](\d\d?)[./](\d{4}) )?"
     r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9})?)Z?"
 )
-_FIRST_DAY = datetime.date(2000, 1, 1).toordinal()
+_FIRST_DAY = datetime.date(2000, 1, 1).toordinal()  # from which days are counted
 
 
 def value(field: str, decimal: str) -> float | None:

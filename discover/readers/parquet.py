@@ -93,11 +93,11 @@ def _numbers(column: Any, header: str, name: str, first: int) -> Array:
     kind = column.type
     if _is_time(kind):
         unit = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[kind.unit]
-        return np.asarray(_doubles(_less(_counts(column), first)) / unit)
+        return np.asarray(_doubles(_counted_from(_counts(column), first)) / unit)
     if pa.types.is_integer(kind):
         # Counts of nanoseconds since 1970 are beyond what a float holds to the digit.
         counts = _counts(column)
-        return _doubles(_less(counts, first) if abs(first) > 2**53 else counts)
+        return _doubles(_counted_from(counts, first) if abs(first) > 2**53 else counts)
     if not pa.types.is_floating(kind):
         raise InputError(header, expected="numeric", found=str(kind), where=name)
     return _doubles(column.cast(pa.float64()))
@@ -118,7 +118,7 @@ def _first(column: Any) -> int:
     return next((int(value) for value in found if value is not None), 0)
 
 
-def _less(counts: Any, first: int) -> Any:
+def _counted_from(counts: Any, first: int) -> Any:
     return compute.subtract(counts, pa.scalar(first, pa.int64()))
 
 

@@ -23,7 +23,7 @@ from discover.readers.source import Source
 from discover.readers.units import SMALLEST
 from discover.record_kind import classify
 from discover.records import Finding, Record
-from models.checks import InputError, shown
+from models.checks import Array, InputError, shown
 
 _FEW = 50  # samples, below which a warning says so
 MAY_LACK = tuple(name for name in QUANTITIES if name not in ("time", "force"))
@@ -63,13 +63,7 @@ def read_record(
         On anything that leaves no usable record.
     """
     file = entry.label(part)
-    columns = read_columns(
-        source,
-        names=names,
-        units=units,
-        may_lack=MAY_LACK,
-        step=entry.step,
-    )
+    columns = read_columns(source, names=names, units=units, may_lack=MAY_LACK, step=entry.step)
     if "displacement" not in columns.values and None in (entry.frequency, entry.amplitude):
         raise missing_column(
             source,
@@ -78,57 +72,22 @@ def read_record(
             instead=", or the record's frequency and amplitude given",
         )
     columns = _within(columns, entry, file)
-    findings = [
-        Finding(
-            "warning",
-            f"column {shown(header)} is not read: it is nearly {quantity!r}; rename it, or name it"
-            " in [columns]",
-            file,
-        )
-        for header, quantity in columns.unused.items()
-    ]
-    if columns.step is not None:
-        text = f"it has no time column: the times are made of its {1.0 / columns.step:.6g} Hz"
-        findings.append(Finding("note", text, file))
-    if columns.assumed:
-        findings.append(Finding("warning", assumed_units(columns.assumed), file))
-    values = dict(columns.values)
-    has_motion = "displacement" in values
-    time, measured = values.pop("time"), values
+    findings = _header_findings(columns, file)
+    measured = dict(columns.values)
+    time = measured.pop("time")
     sampled = regular(
         time,
-        values,
+        measured,
         raw_time=columns.raw_time,
-        resample=has_motion,
+        resample="displacement" in measured,
         where=file,
         place=source.place,
     )
-    for name in ("displacement", "force"):
-        if name in values and not np.ptp(values[name]) > SMALLEST:
-            found = f"{values[name][0]:.6g} throughout"
-            raise InputError(name, expected="varying", found=found, where=file)
+    _check_varying(measured, file)
+    findings += _value_findings(measured, file)
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
-    odd = [clipping_text(values["force"])]
-    if has_motion:
-        odd.append(clipped_motion_text(values["displacement"]))
-        if values["force"].size < _FEW:
-            odd.append(f"only {values['force'].size} samples: too few to tell a law from noise")
-    findings += [Finding("warning", text, file) for text in odd if text]
-    values = dict(sampled.columns)
-    for order, name in enumerate(("velocity", "acceleration"), start=1):
-        if name not in values:
-            continue
-        if not has_motion:
-            del values[name]
-            continue
-        agreement = derivative_agreement(values["displacement"], values[name], step, order=order)
-        if not agreement.accepted:
-            del values[name]
-            text = (
-                f"the measured {name} disagrees with the displacement: {agreement.reason}; "
-                "it is not used"
-            )
-            findings.append(Finding("warning", text, file))
+    values, disagreeing = _checked_by_motion(sampled.columns, step, file)
+    findings += disagreeing
     record = Record(
         file=file,
         time=sampled.time,
@@ -151,6 +110,70 @@ def read_record(
             record = record.sampled(time, measured)
     findings.extend(check_labels(record))
     return record, findings, columns.assumed
+
+
+def _header_findings(columns: Columns, file: str) -> list[Finding]:
+    """Return what was odd in the headers: columns not read, times made, units assumed."""
+    findings = [
+        Finding(
+            "warning",
+            f"column {shown(header)} is not read: it is nearly {quantity!r}; rename it, or name it"
+            " in [columns]",
+            file,
+        )
+        for header, quantity in columns.unused.items()
+    ]
+    if columns.step is not None:
+        text = f"it has no time column: the times are made of its {1.0 / columns.step:.6g} Hz"
+        findings.append(Finding("note", text, file))
+    if columns.assumed:
+        findings.append(Finding("warning", assumed_units(columns.assumed), file))
+    return findings
+
+
+def _check_varying(values: Mapping[str, Array], file: str) -> None:
+    """Refuse a displacement or a force that is the same throughout."""
+    for name in ("displacement", "force"):
+        if name in values and not np.ptp(values[name]) > SMALLEST:
+            found = f"{values[name][0]:.6g} throughout"
+            raise InputError(name, expected="varying", found=found, where=file)
+
+
+def _value_findings(values: Mapping[str, Array], file: str) -> list[Finding]:
+    """Return what is odd in the values as measured: clipped channels, too few samples."""
+    force = values["force"]
+    odd = [clipping_text(force)]
+    if "displacement" in values:
+        odd.append(clipped_motion_text(values["displacement"]))
+        if force.size < _FEW:
+            odd.append(f"only {force.size} samples: too few to tell a law from noise")
+    return [Finding("warning", text, file) for text in odd if text]
+
+
+def _checked_by_motion(
+    columns: Mapping[str, Array], step: float, file: str
+) -> tuple[dict[str, Array], list[Finding]]:
+    """Return the columns without a velocity and an acceleration that the displacement denies.
+
+    Without a displacement there is nothing that they could be checked by, and both go.
+    """
+    values, findings = dict(columns), []
+    for order, name in enumerate(("velocity", "acceleration"), start=1):
+        if name not in values:
+            continue
+        column = values.pop(name)
+        if "displacement" not in values:
+            continue
+        agreement = derivative_agreement(values["displacement"], column, step, order=order)
+        if agreement.accepted:
+            values[name] = column
+            continue
+        text = (
+            f"the measured {name} disagrees with the displacement: {agreement.reason}; "
+            "it is not used"
+        )
+        findings.append(Finding("warning", text, file))
+    return values, findings
 
 
 def _within(columns: Columns, entry: Entry, file: str) -> Columns:

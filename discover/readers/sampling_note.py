@@ -22,7 +22,7 @@ _STEP = re.compile(
     re.IGNORECASE,
 )
 _OWN_UNIT = re.compile(r"(.*?)[\s_]*[\[(]([^\[\]()]{1,20})[\])]")
-_LONGEST = 80
+_LONGEST = 80  # characters of a name or a value
 _RATE_UNITS = {"": "Hz", "s/s": "Hz", "samples/s": "Hz", "sps": "Hz", "1/sec": "Hz", "s-1": "Hz"}
 
 

@@ -13,9 +13,10 @@ from discover.readers.content import content_error, optional_package
 from discover.readers.source import Book
 from discover.readers.tree import Leaf, tree_book
 
-_FUNCTION = 58
+_FUNCTION = 58  # number of the data set that holds a function
 _EVEN = 1  # abscissa spacing
 _TIME = 17  # specific data type of the abscissa
+# By the data type of the ordinate.
 _ROLES = {8: "displacement", 9: "force", 11: "velocity", 12: "acceleration", 13: "force"}
 _EMPTY = ("", "NONE")
 

@@ -49,6 +49,7 @@ _UNIT = re.compile(
 _ANGLES = ("radian", "degree", "revolution", "revolutions_per_minute", "revolutions_per_second")
 
 
+# Kept: to read the file of all known units takes longer than to read a small campaign.
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[Any]:
     return pint.UnitRegistry()
@@ -67,6 +68,7 @@ class _Conversion:
     offset: float
 
 
+# Kept: each record states the same few units, and each is a small number.
 @lru_cache(maxsize=512)
 def _conversion(text: str, kind: str) -> _Conversion:
     """Return how a unit of the right dimension converts, or raise ValueError with why not."""

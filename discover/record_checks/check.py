@@ -17,7 +17,7 @@ from discover.records import Campaign, Finding, Record
 from discover.rows import compared_with
 
 _BEYOND_SKEW = 0.5  # of the force: no plausible delay turns that much of inertia into damping
-_FEW_CYCLES = 3.0
+_FEW_CYCLES = 3.0  # below which a warning says so
 _FEW_SAMPLES = 20.0  # a cycle
 _NOISY = 20.0  # percent
 

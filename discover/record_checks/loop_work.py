@@ -18,7 +18,7 @@ from models.checks import Array
 _LEVELS = np.linspace(0.1, 0.9, 9)  # of the stroke, at which loops may begin
 _PASSES = 0.02  # of the stroke: a crossing is one that goes that far to either side
 _ENOUGH_LOOPS = 5  # for the kinetic energy to be fitted
-_SURE = 0.995
+_SURE = 0.995  # probability, from which the sign of the work is sure
 _SLOPE_PART = 0.02  # of a loop's samples, to either side, over which its speed is taken
 _ROUND_OFF = 1e-9  # of the work that the force could have done
 

@@ -128,7 +128,7 @@ def differing_records(rows: Sequence[RecordRows]) -> tuple[Differing, ...]:
     if len(known) < 2:
         return ()
     fits = _Fits(tuple(_triangle(r) for r in known))
-    found = _by_pairs(fits, _alike(known))
+    found = _by_pairs(fits, _pairs_of_like_motion(known))
     rest = [k for k in range(len(known)) if k not in found]
     while len(rest) >= _FEWEST:
         judged = {k: fits.beside(k, [i for i in rest if i != k]) for k in rest}
@@ -153,7 +153,7 @@ def _triangle(rows: RecordRows) -> Array:
     return np.asarray(np.linalg.qr(whole.T, mode="r"))
 
 
-def _alike(rows: Sequence[RecordRows]) -> list[tuple[int, int]]:
+def _pairs_of_like_motion(rows: Sequence[RecordRows]) -> list[tuple[int, int]]:
     """Return the pairs of records of one kind whose frequencies and amplitudes are alike."""
     seen = [r.observation for r in rows]
     place = np.log([[max(o.frequency, 1e-12), max(o.amplitude, 1e-12)] for o in seen])

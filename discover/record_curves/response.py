@@ -13,11 +13,11 @@ from discover.residual_data import Response
 from discover.rows import Accuracy
 from models.checks import Array
 
-_SEGMENTS = 8
+_SEGMENTS = 8  # of a record, at least, that its spectra are averaged over
 _LEAST_SEGMENT = 64  # samples
 _POINTS = 120  # of a spectrum as drawn
-_PHASES = 48
-_LAGS = 40
+_PHASES = 48  # parts of a cycle
+_LAGS = 40  # samples, up to which what is left is correlated
 _EXCITED = 1e-5  # of the displacement's greatest density, below which nothing is asked
 _BEYOND = 2.5  # samples a cycle of the band's end, to which band-limited records are thinned
 
@@ -32,7 +32,7 @@ def response(accuracy: Accuracy) -> Response:
     place = o.at_samples(o.motion.displacement)
     speed = o.at_samples(o.motion.velocity)
     left = o.measured - accuracy.model_force
-    step, even = _evenly(o, np.stack([place, o.measured, accuracy.model_force, left]))
+    step, even = _at_even_times(o, np.stack([place, o.measured, accuracy.model_force, left]))
     sine = o.kind == "sine"
     size = _segment(even.shape[1], step, o.frequency if sine else None)
     frequency, force = welch(even[1], 1.0 / step, nperseg=size)
@@ -68,7 +68,7 @@ def response(accuracy: Accuracy) -> Response:
     )
 
 
-def _evenly(o: Observation, signals: Array) -> tuple[float, Array]:
+def _at_even_times(o: Observation, signals: Array) -> tuple[float, Array]:
     """Return signals (..., M) at even times, with the step, s."""
     time = o.time
     step = float((time[-1] - time[0]) / (time.size - 1))

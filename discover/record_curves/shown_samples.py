@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from discover.motion_fit import Observation
 
-_POINTS = 600
-_CYCLES = 2.0
+_POINTS = 600  # of a record as drawn
+_CYCLES = 2.0  # of a sine test as drawn
 _TURNS = 4.0  # of other motion in a stretch: more can't be told apart in a picture
-_STRETCHES = 3
+_STRETCHES = 3  # of other records as drawn
 
 
 def shown_samples(observation: Observation) -> NDArray[np.intp]:

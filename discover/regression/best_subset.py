@@ -22,11 +22,12 @@ from discover.regression.least_squares import reduce_rows, solve
 from models.checks import Array, InputError, finite_array
 from models.compiled import compiled
 
-_ROWS_AT_ONCE = 4096
+_ROWS_AT_ONCE = 4096  # that are reduced to a triangle together
 _DEPENDENT = 1e-24  # squared length left of a unit column that the others make up
 _CANCELS = 1e-6  # part of the misfit below which it is formed from the residual itself
-_MOST_SUBSETS = 200_000_000
-_MOST_GROUPS = 62
+_MOST_SUBSETS = 200_000_000  # that one search compares: some minutes
+_MOST_GROUPS = 62  # bits of a whole number, one each
+_SUMS_IN_ANY_ORDER = {"reassoc", "contract"}  # so that the processor sums several at a time
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,41 @@ class SubsetPath:
         return self.sizes[size][0] if self.sizes[size] else None
 
 
-@compiled(cache=True, nogil=True, fastmath={"reassoc", "contract"})
+@compiled(cache=True, nogil=True, fastmath=_SUMS_IN_ANY_ORDER)
+def _signs_hold(  # pragma: no cover - compiled
+    members: NDArray[np.int64],
+    along: Array,
+    upper: Array,
+    diagonal: Array,
+    positive: NDArray[np.bool_],
+    coefficient: Array,
+) -> bool:
+    """Solve for the members' coefficients, last one first; return whether they meet the signs."""
+    for a in range(members.size - 1, -1, -1):
+        total = along[a]
+        for b in range(a + 1, members.size):
+            total -= upper[a, members[b]] * coefficient[b]
+        coefficient[a] = total / diagonal[a]
+        if positive[members[a]] and coefficient[a] < 0.0:
+            return False
+    return True
+
+
+@compiled(cache=True, nogil=True, fastmath=_SUMS_IN_ANY_ORDER)
+def _insert(  # pragma: no cover - compiled
+    best: Array, subsets: NDArray[np.int64], value: float, members: NDArray[np.int64]
+) -> None:
+    """Put a subset into the kept ones of its size, best first; the last of them goes."""
+    place = best.size - 1
+    while place > 0 and best[place - 1] > value:
+        best[place] = best[place - 1]
+        subsets[place] = subsets[place - 1]
+        place -= 1
+    best[place] = value
+    subsets[place, : members.size] = members
+
+
+@compiled(cache=True, nogil=True, fastmath=_SUMS_IN_ANY_ORDER)
 def _search(  # pragma: no cover - compiled
     columns: Array,
     target: Array,
@@ -71,6 +106,7 @@ def _search(  # pragma: no cover - compiled
     Parameters: unit columns (K, m), the `forced` ones first; target (m,); sign constraints (K,);
     bits (K,) of the exclusive groups that each column is in; greatest size; how many to keep.
     """
+    # The loop over columns stands here whole: views of them passed on cost half its time again.
     count, length = columns.shape
     left = np.empty((most, count, length))  # columns orthogonal to those chosen, by depth
     power = np.empty((most, count))  # their squared lengths
@@ -114,23 +150,9 @@ def _search(  # pragma: no cover - compiled
                 rest = residual[depth, n] - share * left[depth, j, n]
                 value += rest * rest
         if size >= forced and value < best[size, keep - 1]:
-            fits = True
-            for a in range(depth, -1, -1):
-                total = along[a]
-                for b in range(a + 1, size):
-                    total -= upper[a, chosen[b]] * coefficient[b]
-                coefficient[a] = total / diagonal[a]
-                if positive[chosen[a]] and coefficient[a] < 0.0:
-                    fits = False
-                    break
-            if fits:
-                place = keep - 1
-                while place > 0 and best[size, place - 1] > value:
-                    best[size, place] = best[size, place - 1]
-                    subsets[size, place] = subsets[size, place - 1]
-                    place -= 1
-                best[size, place] = value
-                subsets[size, place, :size] = chosen[:size]
+            members = chosen[:size]
+            if _signs_hold(members, along, upper, diagonal, positive, coefficient):
+                _insert(best[size], subsets[size], value, members)
         if size == most:
             continue
 

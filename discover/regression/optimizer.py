@@ -11,14 +11,14 @@ from pysindy.optimizers import BaseOptimizer
 
 from discover.regression.best_subset import Subset, SubsetPath, best_subsets, compress
 from discover.regression.term_count import (
+    CRITERIA,
     TermCount,
     by_criterion,
     by_leaving_out,
-    effective_samples,
+    independent_samples,
 )
 from models.checks import Array, InputError, number, one_of
 
-_CRITERIA = ("ebic", "bic")
 _KEPT = 32  # subsets of each size among which every fold chooses
 
 
@@ -138,7 +138,7 @@ class BestSubset(BaseOptimizer):  # type: ignore[misc]
         return self
 
     def _reduce(self, x: Array, y: Array) -> None:
-        one_of("criterion", self.criterion, _CRITERIA, where="BestSubset")
+        one_of("criterion", self.criterion, CRITERIA, where="BestSubset")
         if self.effective_samples is not None:
             number("effective_samples", self.effective_samples, above=1.0, where="BestSubset")
         elif self.groups is None and x.shape[0] <= x.shape[1] + 1:
@@ -197,9 +197,7 @@ class BestSubset(BaseOptimizer):  # type: ignore[misc]
             return by_leaving_out(path, blocks)
         samples = self.effective_samples
         if samples is None:
-            fullest = next(s[0] for s in reversed(path.sizes) if s)
-            fitted = x[:, list(fullest.indices)] @ fullest.coefficients
-            samples = max(effective_samples(target - fitted), 2.0)
+            samples = independent_samples(path, x, target)
         return by_criterion(path, x.shape[1], samples=float(samples), criterion=self.criterion)
 
 

@@ -11,11 +11,10 @@ from sklearn.base import BaseEstimator, RegressorMixin
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from discover.regression.best_subset import best_subsets
-from discover.regression.term_count import by_criterion, effective_samples
+from discover.regression.term_count import CRITERIA, by_criterion, independent_samples
 from models.checks import Array, number, one_of
 
-_CRITERIA = ("ebic", "bic")
-_KEPT = 5
+_KEPT = 5  # subsets of each size
 
 
 class InerterRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
@@ -97,7 +96,7 @@ class InerterRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         InputError
             For parameters that don't fit the data, see `best_subsets`.
         """
-        one_of("criterion", self.criterion, _CRITERIA, where="InerterRegressor")
+        one_of("criterion", self.criterion, CRITERIA, where="InerterRegressor")
         columns, force = validate_data(
             self, X, y, dtype=np.float64, y_numeric=True, ensure_min_samples=2
         )
@@ -107,9 +106,7 @@ class InerterRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             columns, force, max_terms=most, forced=self.forced, nonnegative=self.nonnegative,
             exclusive=self.exclusive, keep=_KEPT,
         )  # fmt: skip
-        fullest = next(s[0] for s in reversed(path.sizes) if s)
-        left = force - columns[:, list(fullest.indices)] @ fullest.coefficients
-        samples = number("effective samples", max(effective_samples(left), 2.0))
+        samples = number("effective samples", independent_samples(path, columns, force))
         size = by_criterion(path, count, samples=samples, criterion=self.criterion).size
         chosen = path.sizes[size][0]
         self.coef_: Array = np.zeros(count)

@@ -21,6 +21,8 @@ from scipy.special import gammaln
 from discover.regression.best_subset import Subset, SubsetPath
 from models.checks import Array
 
+CRITERIA = ("ebic", "bic")
+"""Names of the information criteria."""
 _ALONE = 1e-10  # share of a direction that other groups hold, below which they say nothing of it
 _WINDOW = 5.0  # correlation times over which the correlation is summed
 _ROUND_OFF = 1e-26  # of the energy: a misfit below it is zero
@@ -163,6 +165,28 @@ def by_criterion(
                     gammaln(candidates + 1) - gammaln(size + 1) - gammaln(candidates - size + 1)
                 )
     return TermCount(int(np.argmin(scores)), scores, criterion)
+
+
+def independent_samples(path: SubsetPath, columns: Array, target: Array) -> float:
+    """Return how many samples count for a criterion: those of what the fullest subset leaves.
+
+    Parameters
+    ----------
+    path : SubsetPath
+        On all rows.
+    columns : ndarray, shape (N, K)
+        All candidates, rows in order of time.
+    target : ndarray, shape (N,)
+        What they explain.
+
+    Returns
+    -------
+    float
+        At least 2.
+    """
+    fullest = next(s[0] for s in reversed(path.sizes) if s)
+    left = target - columns[:, list(fullest.indices)] @ fullest.coefficients
+    return max(effective_samples(left), 2.0)
 
 
 def effective_samples(residual: Array) -> float:

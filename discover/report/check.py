@@ -112,7 +112,7 @@ def next_step(document: Mapping[str, Any], *, campaign: str) -> str:
         pair = listed(widest["structures"], last="from")
         return (
             f"no sine test within the limits of the tests so far tells {pair}; wider limits can be"
-            f" given in [rig] of campaign.toml{_quieter(float(widest['gap']))}. {as_it_is}"
+            f" given in [rig] of campaign.toml{_noise_needed(float(widest['gap']))}. {as_it_is}"
         )
     nats = float(test["gap_nats"])
     place = (
@@ -123,7 +123,7 @@ def next_step(document: Mapping[str, Any], *, campaign: str) -> str:
     if nats < TELLING:
         return (
             f"{place}, the best one more within limits; {pair} would then be told by"
-            f" {nats_text(nats)} nats only{_quieter(nats)}. {as_it_is}"
+            f" {nats_text(nats)} nats only{_noise_needed(nats)}. {as_it_is}"
         )
     return (
         f"{place}: what can't be told apart now would then differ by {nats_text(nats)} nats or"
@@ -131,7 +131,7 @@ def next_step(document: Mapping[str, Any], *, campaign: str) -> str:
     )
 
 
-def _quieter(nats: float) -> str:
+def _noise_needed(nats: float) -> str:
     """Return how much less noise would do; "" where no such noise is in reach."""
     if nats < 0.01 * TELLING:
         return ""

@@ -54,7 +54,7 @@ def comparison_lines(document: Mapping[str, Any]) -> list[str]:
         )
     for entry in document["errors"]:
         ranked = sorted(entry["models"], key=lambda m: int(m["rank"]))
-        misses = listed(f"{m['name']} {percent(_miss(m))}" for m in ranked)
+        misses = listed(f"{m['name']} {percent(_ranked_error(m))}" for m in ranked)
         lines.append(
             f"Errors: of the force on {entry['ranked_on']} of “{entry['campaign']['title']}”,"
             f" {misses}; noise {percent(entry['noise_percent'])}."
@@ -98,7 +98,7 @@ def value_text(value: Mapping[str, Any] | None) -> str:
     return text
 
 
-def _miss(model: Mapping[str, Any]) -> float | None:
+def _ranked_error(model: Mapping[str, Any]) -> float | None:
     held_out: float | None = model["held_out_relative_error_percent"]
     return model["relative_error_percent"] if held_out is None else held_out
 

@@ -85,7 +85,7 @@ def design_report(document: Mapping[str, Any], figures: Mapping[str, str], *, co
     """
     best, baseline = document if document["feasible"] else None, document["baseline"]
     rows = [
-        (label, unit, _value(baseline["geometry"], key, scale), _of(best, "geometry", key, scale))
+        (label, unit, _value(baseline["geometry"], key, scale), _best(best, "geometry", key, scale))
         for key, label, scale, unit in _ROWS
     ]
     rows += [
@@ -125,5 +125,5 @@ def _value(table: Mapping[str, Any], key: str, scale: float) -> str:
     return significant(scale * table[key])
 
 
-def _of(point: Mapping[str, Any] | None, group: str, key: str, scale: float) -> str:
+def _best(point: Mapping[str, Any] | None, group: str, key: str, scale: float) -> str:
     return "–" if point is None else _value(point[group], key, scale)

@@ -92,6 +92,7 @@ def grouped(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     return [{"level": k[0], "text": k[1], "records": records} for k, records in found.items()]
 
 
+# Kept: the templates that ship with the package do not change.
 @cache
 def environment() -> jinja2.Environment:
     """Return the engine for the templates that ship with the package."""

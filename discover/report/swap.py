@@ -82,6 +82,7 @@ def without_signals() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+# Kept: the C library has the function or not, as long as the process lives.
 @cache
 def _renameat2() -> Any:
     """Return the C library's function, None where there is none."""

@@ -11,7 +11,7 @@ from discover.rows.record_rows import RecordRows
 from models.checks import Array
 
 _TOLERANCE = 3e-5  # of a record's force: no model is better
-_MOST_HATS = 8
+_MOST_HATS = 8  # functions of frequency that a smooth response is made of
 _GROWS = 0.5  # power of the local force's power, with which that of what models miss grows
 _PER_E_FOLD = 3.0  # levels of force that are told apart, for each factor e of frequency
 _PRODUCTS = ((0, 0), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))

@@ -17,7 +17,7 @@ from discover.motion_fit import Observation
 from models.checks import Array
 from models.motion import Motion
 
-_COARSER = 4
+_COARSER = 4  # times: the remainder's grid of a cycle against the motion's
 
 
 @dataclass(frozen=True)

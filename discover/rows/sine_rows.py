@@ -98,8 +98,8 @@ def _basis(
         power = power * turn
         waves[k] = power
     pairs = np.stack([waves.real, waves.imag], axis=1).reshape(2 * count, -1)
-    late = 2.0 * (time - time.min()) / max(float(np.ptp(time)), 1e-300) - 1.0
-    slow = np.polynomial.legendre.legvander(late, _SLOW)[:, 1:].T
+    centred_time = 2.0 * (time - time.min()) / max(float(np.ptp(time)), 1e-300) - 1.0
+    slow = np.polynomial.legendre.legvander(centred_time, _SLOW)[:, 1:].T
     parts = [np.ones((1, time.size)), pairs, slow]
     order = [np.zeros(1), np.repeat(np.arange(1.0, count + 1.0), 2), np.zeros(_SLOW)]
     changes = [np.zeros(1 + 2 * count), np.arange(1.0, _SLOW + 1.0)]

@@ -110,10 +110,10 @@ class Harmonics:
         found = np.zeros((powers, columns.shape[0], count + 1), dtype=np.complex128)
         if self.at.step is None:
             for inside, waves in self._blocks(count):
-                late = np.ones(waves.shape[1])
+                power_of_time = np.ones(waves.shape[1])
                 for m in range(powers):
-                    found[m] += (columns[:, inside] * late) @ waves.T
-                    late = late * self.at.time[inside]
+                    found[m] += (columns[:, inside] * power_of_time) @ waves.T
+                    power_of_time = power_of_time * self.at.time[inside]
             return found
         pairs = self._pairs(count, powers)
         for place, column in enumerate(columns):

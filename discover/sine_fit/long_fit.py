@@ -16,10 +16,10 @@ from models.checks import Array, InputError
 
 _BLOCK = 4096  # samples: with their columns they stay in the processor's cache
 _STRETCHES = 64  # of at least two cycles each, whose amplitude and phase are compared
-_MOST_PASSES = 6
+_MOST_PASSES = 6  # through the record
 _SETTLED = 1e-7  # rad over the record, by which a linear step in frequency is exact
 _SAME = 0.05  # of the amplitude, and rad: what a steady sine may differ by from stretch to stretch
-_HARMONICS = 7
+_HARMONICS = 7  # of the displacement
 
 Pieces = Callable[[], Iterator[tuple[Array, Array]]]
 
@@ -110,7 +110,7 @@ def fit_long_sine(
     passes, turn = 0, np.inf
     while abs(turn) * duration >= _SETTLED and passes < _MOST_PASSES:
         passes += 1
-        sums = _passed(
+        sums = _sums_of_pass(
             pieces, frequency, orders, beta, (middle, duration, offset), samples, stretches
         )
         total = sums.products.sum(axis=0)
@@ -164,7 +164,7 @@ def _beta(head: SineFit, orders: Sequence[int], middle: float) -> Array:
     return beta
 
 
-def _passed(
+def _sums_of_pass(
     pieces: Pieces,
     frequency: float,
     orders: Sequence[int],

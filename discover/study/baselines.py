@@ -36,10 +36,10 @@ _PLAIN = (
     "inertia", "viscous-damping", "quadratic-damping", "stiffness", "cubic-stiffness",
     "force-offset", "asymmetric-damping",
 )  # fmt: skip
-_THRESHOLDS = np.geomspace(1e-3, 1.0, 19)
-_RIDGES = (1e-8, 1e-4, 1e-2)
-_RELAXATIONS = (1.0, 1e2, 1e4)
-_SR3_STEPS = 100
+_THRESHOLDS = np.geomspace(1e-3, 1.0, 19)  # of STLSQ and SR3, as columns and force have length one
+_RIDGES = (1e-8, 1e-4, 1e-2)  # of STLSQ and SSR
+_RELAXATIONS = (1.0, 1e2, 1e4)  # of SR3
+_SR3_STEPS = 100  # at most
 _SAME = 1e-8  # of 1 - |cosine|: columns that are one and the same
 _TINY = 1e-26  # of the energy: a misfit below it is zero
 

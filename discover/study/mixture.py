@@ -14,9 +14,9 @@ from discover.posterior.spread import Spread, spread_of
 from models.checks import Array
 
 _LEAST = 0.05  # of a structure's probability, from which another set of its terms counts
-_TAIL = 0.025
+_TAIL = 0.025  # of the probability, outside each end of an interval of 95 %
 _FAR = 6.0  # standard deviations
-_POINTS = 4001
+_POINTS = 4001  # of the grid that the mixture is summed up on
 
 
 @dataclass(frozen=True)

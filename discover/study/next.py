@@ -19,7 +19,7 @@ from discover.study.result import StudyBand, StudyBoundary
 from models.checks import Array
 
 _DEAN = ("a boundary at fixed Dean number", "a boundary at fixed frequency")
-_HALVED = float(np.log(2.0))
+_HALVED = float(np.log(2.0))  # nats gained: a test in the middle halves the bracket
 _NARROW = 0.05  # of the coordinate's logarithm, that no bracket needs to be narrower than
 
 

@@ -45,7 +45,7 @@ def headline(document: Mapping[str, Any]) -> str:
     if not bands:
         return "no band could be formed from these records"
     names = [structure_name(b) for b in bands]
-    besides = _besides(bands[0])
+    besides = _effects_beside(bands[0])
     if len(bands) == 1:
         count = len(bands[0]["records"])
         where = _ALL.get(count, f"all {counted(count, 'record')}")
@@ -81,8 +81,8 @@ def verdict_lines(document: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(line for line in lines if line)
 
 
-_ALL = {1: "the one record", 2: "both records"}
-_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
+_ALL = {1: "the one record", 2: "both records"}  # that a band holds
+_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}  # of bands, in words
 
 
 def structure_name(band: Mapping[str, Any]) -> str:
@@ -111,7 +111,7 @@ def structure_name(band: Mapping[str, Any]) -> str:
     return f"{name} of order {listed(significant(o, 3) for o in orders)}" if orders else name
 
 
-def _besides(band: Mapping[str, Any]) -> str:
+def _effects_beside(band: Mapping[str, Any]) -> str:
     """Return what the device has beside its structure, by name: the same in all bands.
 
     An effect whose size may as well be zero is not stated.
@@ -157,12 +157,12 @@ def extras(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     seen: list[Mapping[str, Any]] = []
     for band in document["bands"]:
         for extra in band.get("extras", ()):
-            if not any(_same(extra, e) for e in seen):
+            if not any(_same_effect(extra, e) for e in seen):
                 seen.append(extra)
     return seen
 
 
-def _same(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+def _same_effect(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
     return all(one[key] == other[key] for key in ("id", "coefficient"))
 
 

@@ -57,7 +57,9 @@ class FittedTerm:
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle by value (a mapping proxy can't be pickled)."""
         values = (self.id, self.coefficient, dict(self.shape))
-        return (FittedTerm, values) if self.term.source is None else (_own, (self.term, *values))
+        if self.term.source is None:
+            return FittedTerm, values
+        return _own_fitted_term, (self.term, *values)
 
     @property
     def unit(self) -> str:
@@ -125,7 +127,7 @@ def _stored(parameter: Parameter, value: Any, identifier: str, where: str) -> fl
     return result
 
 
-def _own(term: Term, identifier: str, coefficient: float, shape: Shape) -> FittedTerm:
+def _own_fitted_term(term: Term, identifier: str, coefficient: float, shape: Shape) -> FittedTerm:
     """Return a fitted term of a user's own in a process that may not know it."""
     with own_terms(term):
         return FittedTerm(identifier, coefficient, shape)

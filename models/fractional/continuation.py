@@ -34,6 +34,7 @@ class EndFit:
     """Norm of the prior: ridge over noise ratio."""
 
 
+# Kept: matrices of lengths and band alone, which records of one sampling share.
 @functools.lru_cache(maxsize=32)
 def end_fit(fitted: int, added: int, band: float) -> EndFit:
     """Prepare the continuation of records.

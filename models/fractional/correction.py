@@ -18,6 +18,7 @@ HEAD_SAMPLES = 192
 """Samples after which nothing but the scheme's own order is left."""
 
 
+# Kept, as the next: numbers of offset and orders alone, the same for all records.
 @functools.lru_cache(maxsize=64)
 def end_corrections(offset: float = 0.0) -> Array:
     r"""Return e_k(n): what to add to the first samples of (n + u)^k, k = 0 .. 5.

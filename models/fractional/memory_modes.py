@@ -69,6 +69,7 @@ def memory_modes(orders: Array, p: int) -> MemoryModes:
     return _memory_modes(tuple(orders.tolist()), p)
 
 
+# Kept: rates and weights of the orders alone, the same for all records.
 @functools.lru_cache(maxsize=16)
 def _memory_modes(orders: tuple[float, ...], p: int) -> MemoryModes:
     alpha = np.array(orders)

@@ -75,6 +75,7 @@ def noise_gains(orders: Array, stride: int) -> Array:
     return np.asarray(slower[:, None] * _norms(tuple(orders.tolist())))
 
 
+# Kept: six numbers of each order, the same for all records.
 @functools.lru_cache(maxsize=64)
 def _norms(orders: tuple[float, ...]) -> Array:
     """Norms of the weights of each order and number of steps, (K, 6)."""

@@ -106,6 +106,7 @@ def _widths(limit: int) -> list[int]:
     return widths
 
 
+# Kept: matrices of the width alone, which every record of that width needs.
 @functools.lru_cache(maxsize=64)
 def _fit(width: int) -> tuple[NDArray[np.intp], Array, Array, Array]:
     """Nodes, projector on Legendre modes, the modes at the nodes, and modes to monomials in n."""

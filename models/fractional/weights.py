@@ -76,6 +76,7 @@ def symbol_series(orders: Array, p: int) -> Array:
     return _symbol_series(tuple(orders.tolist()), p)
 
 
+# Kept: a series of the orders alone, the same for all records.
 @functools.lru_cache(maxsize=128)
 def _symbol_series(given: tuple[float, ...], p: int) -> Array:
     orders = np.array(given)

@@ -99,13 +99,13 @@ def _search(reached: Callable[[float], float], size: float, start: float, *, nam
     """
     tried: dict[float, float] = {}
 
-    def off(amount: float) -> float:
+    def log_ratio(amount: float) -> float:
         value = max(reached(math.exp(amount)), 1e-12 * size)
         tried[amount] = abs(value / size - 1.0)
         return math.log(value / size)
 
     low = high = math.log(start)
-    below = above = off(low)
+    below = above = log_ratio(low)
     stride = 0.5
     while below > 0.0 or above < 0.0:
         if len(tried) > _EVALUATIONS:
@@ -113,17 +113,17 @@ def _search(reached: Callable[[float], float], size: float, start: float, *, nam
         if above < 0.0:
             low, below = high, above
             high += stride
-            above = off(high)
+            above = log_ratio(high)
         else:
             high, above = low, below
             low -= stride
-            below = off(low)
+            below = log_ratio(low)
         stride = min(1.3 * stride, 3.0)
     side = 0
     while min(tried.values()) > _PRECISION and len(tried) < 2 * _EVALUATIONS and high - low > 1e-4:
         share = below / (below - above) if side < 3 and side > -3 else 0.5
         middle = low + share * (high - low)
-        value = off(middle)
+        value = log_ratio(middle)
         if value < 0.0:
             low, below, side = middle, value, min(side, 0) - 1
             above = 0.5 * above if side < -1 else above

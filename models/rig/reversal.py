@@ -68,6 +68,7 @@ class Reversal:
         return np.asarray(self.half * self.slope(self.half * np.abs(ratio)))
 
 
+# Kept: a table by the law's parameters, asked for by each record of a rig.
 @lru_cache(maxsize=64)
 def tabulate(law: Reversal) -> Array:
     """Return the law's shares (T,) at even steps of r/(1 + r), r speed over half speed.

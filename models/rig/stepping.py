@@ -188,6 +188,8 @@ def _between(
     return y, v0 + s * (2.0 * curve + 3.0 * s * twist)
 
 
+# One compiled function, long as it is: a step's parts share the element's state, and numba's
+# functions take values and arrays only, no object that holds them.
 @njit(cache=True)  # type: ignore[untyped-decorator]
 def _march(
     position: Array,

@@ -44,13 +44,13 @@ class PeriodicPast:
 
     def displacement(self, time: ArrayLike) -> Array:
         """Return x at `time` (N,), (N, n) m."""
-        return self._at(time, np.zeros(1))
+        return self._derivative_at(time, np.zeros(1))
 
     def velocity(self, time: ArrayLike) -> Array:
         """Return v at `time` (N,), (N, n) m/s."""
-        return self._at(time, np.ones(1))
+        return self._derivative_at(time, np.ones(1))
 
-    def _at(self, time: ArrayLike, order: Array) -> Array:
+    def _derivative_at(self, time: ArrayLike, order: Array) -> Array:
         turn = np.exp(1j * np.outer(np.atleast_1d(time), self.rates))
         return np.asarray((turn * (1j * self.rates) ** order @ self.coefficients).real)
 

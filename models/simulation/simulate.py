@@ -77,24 +77,10 @@ def simulate(
     >>> bool(abs(free.displacement[-1, 0] - math.cos(6.0)) < 3e-5)
     True
     """
-    number("step", step, above=0.0)
-    number("duration", duration, at_least=step)
-    if keep_every < 1:
-        raise InputError("keep_every", expected=">= 1", found=f"{keep_every}")
-    steps = math.ceil(duration / step - 1e-9)
+    steps = _step_count(step, duration, keep_every)
     exact_step = duration / steps
     elements = compile_elements(tuple(m.model for m in structure.devices))
-    if past is None:
-        x0 = _state("displacement", displacement, structure.size)
-        v0 = _state("velocity", velocity, structure.size)
-    else:
-        if past.coefficients.shape[1] != structure.size:
-            raise InputError(
-                "coefficients of the past",
-                expected=f"for {structure.size} degrees of freedom",
-                found=f"{past.coefficients.shape[1]}",
-            )
-        x0, v0 = past.displacement(0.0)[0], past.velocity(0.0)[0]
+    x0, v0 = _start(displacement, velocity, past, structure.size)
 
     def at(parts: int) -> Run:
         return run(
@@ -120,14 +106,7 @@ def simulate(
         # A second-order error falls to a quarter: 4/3 of the difference is that of the coarse run.
         error = _error(coarse, fine, 1.0 / 3.0 if richardson else 4.0 / 3.0)
         if richardson:
-            result = Run(
-                coarse.time,
-                _extrapolated(coarse.displacement, fine.displacement),
-                _extrapolated(coarse.velocity, fine.velocity),
-                _extrapolated(coarse.device_force, fine.device_force),
-                fine.energy,
-                fine.switches,
-            )
+            result = _extrapolated(coarse, fine)
     return Response(
         time=result.time,
         displacement=result.displacement,
@@ -143,6 +122,15 @@ def simulate(
     )
 
 
+def _step_count(step: float, duration: float, keep_every: int) -> int:
+    """Return how many steps of at most `step` the duration takes."""
+    number("step", step, above=0.0)
+    number("duration", duration, at_least=step)
+    if keep_every < 1:
+        raise InputError("keep_every", expected=">= 1", found=f"{keep_every}")
+    return math.ceil(duration / step - 1e-9)
+
+
 def _state(name: str, values: ArrayLike, size: int) -> Array:
     given = finite_array(name, values)
     if given.ndim > 1 or given.size not in (1, size):
@@ -150,8 +138,35 @@ def _state(name: str, values: ArrayLike, size: int) -> Array:
     return np.array(np.broadcast_to(given, (size,)))
 
 
-def _extrapolated(coarse: Array, fine: Array) -> Array:
-    return (4.0 * fine - coarse) / 3.0
+def _start(
+    displacement: ArrayLike, velocity: ArrayLike, past: PeriodicPast | None, size: int
+) -> tuple[Array, Array]:
+    """Return displacement and velocity (n,) at t = 0, m and m/s: as given, or the past's end."""
+    if past is None:
+        return _state("displacement", displacement, size), _state("velocity", velocity, size)
+    if past.coefficients.shape[1] != size:
+        raise InputError(
+            "coefficients of the past",
+            expected=f"for {size} degrees of freedom",
+            found=f"{past.coefficients.shape[1]}",
+        )
+    return past.displacement(0.0)[0], past.velocity(0.0)[0]
+
+
+def _extrapolated(coarse: Run, fine: Run) -> Run:
+    """Return a run without the second-order part of the error, from one at half the step too."""
+
+    def each(at_step: Array, at_half: Array) -> Array:
+        return (4.0 * at_half - at_step) / 3.0
+
+    return Run(
+        coarse.time,
+        each(coarse.displacement, fine.displacement),
+        each(coarse.velocity, fine.velocity),
+        each(coarse.device_force, fine.device_force),
+        fine.energy,
+        fine.switches,
+    )
 
 
 def _error(coarse: Run, fine: Run, factor: float) -> ErrorEstimate:

@@ -61,6 +61,8 @@ def response_to_impulse(mass, damping, stiffness, directions, h, rows, table, me
     return inverse, columns, coupling
 
 
+# One compiled function, long as it is: a step's parts share so many arrays that each call would
+# hand them all on, and numba's functions take values and arrays only, no objects that hold them.
 @njit(**_JIT)
 def advance(  # type: ignore[no-untyped-def] # noqa: ANN201
     mass, damping, stiffness, directions, ends, pattern, h, load,  # noqa: ANN001

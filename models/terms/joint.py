@@ -116,6 +116,8 @@ def _size(values: Array) -> float:
     return float(np.sqrt(values @ values / values.size))
 
 
+# One compiled function, long as it is: the joint's state is a dozen local numbers that every part
+# of a step reads and writes, and numba keeps them in registers only while they stay in one place.
 @compiled(cache=True, fastmath=True, error_model="numpy", nogil=True)
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,

@@ -78,6 +78,7 @@ def low_passed_lines(lines: Lines, size: int, step: float, delay: float, order: 
     return np.fft.irfft(lines / np.polyval(_denominator(delay, order), s), n=size)
 
 
+# Kept: a rule of a few nodes for each order.
 @cache
 def earlier(order: int) -> tuple[Array, Array]:
     """Return moments ago (M,) in delays, and weights (M,): their sum is what a low-pass passes.
@@ -101,6 +102,7 @@ def _denominator(delay: float, order: int) -> Array:
     return np.asarray(unscaled * (delay / unscaled[-2]) ** np.arange(order, -1.0, -1.0))
 
 
+# Kept: a few numbers for each order.
 @cache
 def _butterworth(order: int) -> Array:
     """Return the polynomial of corner 1 rad/s."""

@@ -52,6 +52,7 @@ def read_term(path: str | Path) -> Term:
     return _checked(file.resolve(), file.read_bytes())
 
 
+# Kept: a content is run once in a process, so that a class which it defines stays the same class.
 @lru_cache(maxsize=32)
 def _checked(path: Path, content: bytes) -> Term:
     sha256 = hashlib.sha256(content).hexdigest()

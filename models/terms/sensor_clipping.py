@@ -21,14 +21,14 @@ def excess(force: Array, shape: Shape) -> Array:
     """Return what of `force` lies beyond the limit, N, signed."""
     limit, soft = shape["limit"], shape["softness"]
 
-    def over(value: Array) -> Array:
+    def beyond_limit(value: Array) -> Array:
         depth = value - limit
         if soft == 0.0:
             return np.asarray(np.maximum(depth, 0.0))
         return np.asarray(soft * np.logaddexp(0.0, depth / soft))
 
-    upper = over(force) if shape["side"] >= 0.0 else np.zeros_like(force)
-    lower = over(-force) if shape["side"] <= 0.0 else np.zeros_like(force)
+    upper = beyond_limit(force) if shape["side"] >= 0.0 else np.zeros_like(force)
+    lower = beyond_limit(-force) if shape["side"] <= 0.0 else np.zeros_like(force)
     return np.asarray(upper - lower)
 
 
@@ -36,18 +36,18 @@ def starts(scales: Scales) -> list[Start]:
     """Return rails on both sides or one, hard or soft, or at two limits."""
     shares = (0.3, 0.4, 0.5, 0.6, 0.7, 0.78, 0.85, 0.9, 0.95, 0.98)
 
-    def rail(limit: float, soft: float, side: float) -> Shape:
+    def clipped_at(limit: float, soft: float, side: float) -> Shape:
         force = limit * scales.force
         return {"limit": force, "softness": soft * force, "side": side}
 
     even = [
-        Start((rail(c, soft, side),))
+        Start((clipped_at(c, soft, side),))
         for c in shares
         for soft in (0.0, 0.1)
         for side in (0.0, 1.0, -1.0)
     ]
     uneven = [
-        Start((rail(up, 0.0, 1.0), rail(down, 0.0, -1.0)))
+        Start((clipped_at(up, 0.0, 1.0), clipped_at(down, 0.0, -1.0)))
         for up in shares[1::2]
         for down in shares[1::2]
         if up != down

@@ -170,7 +170,7 @@ def figure_8_region() -> Claim:
     )
 
 
-def _closer(frequencies: tuple[float, ...]) -> tuple[list[float], list[float]]:
+def _deviations_of_both(frequencies: tuple[float, ...]) -> tuple[list[float], list[float]]:
     """Return e_d of M1 and of M2 against Eq. 5 at 5 mm."""
     integer = integer_order_model(_device(12))
     conditions = [Condition("device-12", f, 0.005) for f in frequencies]
@@ -187,7 +187,7 @@ def _listed(first: list[float], second: list[float]) -> str:
 
 def figure_8() -> Claim:
     """Whether M1 is the closer below the boundary."""
-    first, second = _closer((0.3, 0.5))
+    first, second = _deviations_of_both((0.3, 0.5))
     return Claim(
         "figure-8",
         "Below the critical frequency (0.3 and 0.5 Hz, 5 mm) M1 is closer to the integer-order "
@@ -200,7 +200,7 @@ def figure_8() -> Claim:
 
 def figure_9() -> Claim:
     """Whether M2 is the closer above the boundary."""
-    first, second = _closer((2.0, 5.0))
+    first, second = _deviations_of_both((2.0, 5.0))
     return Claim(
         "figure-9",
         "Above the critical frequency (2 and 5 Hz, 5 mm) M2 is closer to the integer-order model "
@@ -215,7 +215,7 @@ def segmented_is_better() -> Claim:
     """Whether the segmented model beats M2 alone below the boundary."""
     limit = float(critical_frequency(_device(12), 0.005))
     frequencies = tuple(float(f) for f in np.linspace(0.05, limit, 14))
-    first, second = _closer(frequencies)
+    first, second = _deviations_of_both(frequencies)
     wins = [f for f, a, b in zip(frequencies, first, second, strict=True) if a < b]
     reach = f"M1 closer up to {max(wins):.2f} Hz" if wins else "M1 closer nowhere"
     return Claim(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -223,14 +223,19 @@ def better_for_10() -> Claim:
     )
 
 
+def _peak_reynolds(device: Device, conditions: Sequence[Condition]) -> list[float]:
+    """Return the largest standard Reynolds number of each sine test."""
+    return [
+        float(reynolds(device, 2 * np.pi * c.frequency * c.amplitude, convention="standard"))
+        for c in conditions
+    ]
+
+
 def laminar_at_12() -> Claim:
     """Whether the flow in [12] is laminar at the paper's records, as Eq. 5 assumes."""
     device = Device.preset("device-12")
     conditions = [M1.condition, M2.condition, *(row.condition for row in TABLE_3[:3])]
-    peaks = [
-        float(reynolds(device, 2 * np.pi * c.frequency * c.amplitude, convention="standard"))
-        for c in conditions
-    ]
+    peaks = _peak_reynolds(device, conditions)
     limit = transition_reynolds(device.curvature_ratio)
     return Claim(
         "laminar-12",
@@ -245,10 +250,7 @@ def turbulent_at_10() -> Claim:
     """Whether the flow in [10] is turbulent at the paper's records, as Eq. 6 assumes."""
     device = Device.preset("device-10")
     conditions = [M3.condition, *(row.condition for row in TABLE_3[3:])]
-    peaks = [
-        float(reynolds(device, 2 * np.pi * c.frequency * c.amplitude, convention="standard"))
-        for c in conditions
-    ]
+    peaks = _peak_reynolds(device, conditions)
     limit = transition_reynolds(device.curvature_ratio)
     return Claim(
         "turbulent-10",
