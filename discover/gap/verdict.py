@@ -21,7 +21,7 @@ CLOSED = 1.15
 
 _VERDICTS = {
     "agrees": "model and measurement agree within the noise; nothing is missing",
-    "closed": "with {} added the gap{} is down to the noise",
+    "closed": "with {} added the gap{} is down to {}the noise",
     "reduced": "with {} added the gap{} is smaller, but more is left than noise",
     "unexplained": "something is missing that no effect in the catalogue explains",
 }
@@ -49,7 +49,8 @@ def verdict_lines(document: Mapping[str, Any]) -> list[str]:
     kept = [r for r in document["rounds"] if r["effect"] not in dropped]
     added = listed(short_name(str(r["effect"])) for r in kept)
     pooled = " over all tests" if len(document["records"]) > 1 else ""
-    lines = [f"Verdict: {verdict}: {_said(document, verdict).format(added, pooled)}."]
+    said = _said(document, verdict).format(added, pooled, _times(document))
+    lines = [f"Verdict: {verdict}: {said}."]
     if kept:
         lines.append(f"Missing: {listed(_missing(r) for r in kept)}.")
         for number, entry in enumerate(document["rounds"], start=1):
@@ -70,8 +71,18 @@ def _worst(records: Sequence[Mapping[str, Any]]) -> str:
     return f"; of single tests {worst} is worst, {significant(over[worst], 3)} times its noise"
 
 
+def _over_noise(document: Mapping[str, Any]) -> float:
+    return float(document["final_gap_percent"] / max(document["noise_percent"], 1e-300))
+
+
+def _times(document: Mapping[str, Any]) -> str:
+    """Return how many times the noise a gap is, before these words; "" where it is the noise."""
+    over = significant(max(_over_noise(document), 1.0), 2)
+    return "" if over == "1" else f"{over} times "
+
+
 def _said(document: Mapping[str, Any], verdict: str) -> str:
-    over = document["final_gap_percent"] / max(document["noise_percent"], 1e-300)
+    over = _over_noise(document)
     times = f"the gap is {significant(over, 2)} times the noise"
     if verdict == "closed" and over > CLOSED:
         return f"{_LINES_QUIET} ({times}; see the notes)"
