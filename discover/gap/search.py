@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from discover.gap.baseline import Baseline, in_few_curves
 from discover.posterior.assess import Assessed
-from discover.posterior.grow import Candidate, Step, grown
+from discover.posterior.grow import Candidate, Step, grown, ordered
 from discover.posterior.left_out import is_less, is_needed, left_out
 from discover.posterior.model import Composite
 from discover.rows import Accuracy, accuracy, pooled_percent
+from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
 MOST_ROUNDS = 6  # effects that one search names
@@ -32,6 +33,10 @@ class Stage:
     """Of each record."""
     unseen: tuple[Accuracy, ...]
     """Of those that were not fitted: the held-out ones, or each left out in turn."""
+    errors: Array
+    """(N,) mean square of what is left of each record over that of its force: of those that are
+    fitted by the others alone, of those held out as they are; of parts where one alone is fitted.
+    """
 
     @property
     def seen(self) -> list[Accuracy]:
@@ -102,23 +107,25 @@ def stage(baseline: Baseline, assessed: Assessed) -> Stage:
         accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
     )
     held = tuple(a for a in accuracies if a.observation.held_out)
-    return Stage(
-        assessed, model, tuple(models), accuracies, held or _left_out(baseline, best, accuracies)
-    )
+    seen = [a for a in accuracies if not a.observation.held_out]
+    with_others, by_others = left_out(best)
+    left = _by_others(seen, np.maximum(by_others - with_others, 0.0))
+    errors = np.concatenate([_shares(left) if left else by_others, _shares(held)])
+    return Stage(assessed, model, tuple(models), accuracies, held or left, errors)
 
 
-def _left_out(
-    baseline: Baseline, assessed: Assessed, accuracies: Sequence[Accuracy]
-) -> tuple[Accuracy, ...]:
-    """Return each record's accuracy by the model fitted to the others."""
+def _by_others(accuracies: Sequence[Accuracy], growth: Array) -> tuple[Accuracy, ...]:
+    """Return each record's accuracy by the model fitted to the others; none of one record alone."""
     if len(accuracies) < 2:
         return ()
-    fitted, predicted = left_out(assessed)
-    growth = np.maximum(predicted - fitted, 0.0)
     return tuple(
         replace(a, error_power=a.error_power + float(g) * a.force_power)
         for a, g in zip(accuracies, growth, strict=True)
     )
+
+
+def _shares(accuracies: Sequence[Accuracy]) -> Array:
+    return np.array([a.error_power / max(a.force_power, 1e-300) for a in accuracies])
 
 
 def search(
@@ -153,12 +160,13 @@ def search(
     while len(rounds) < most:
         there = {p.fitted.id for p in here.assessed.model.terms if not p.held}
         open_ids = [e for e in effects if e not in there]
-        last, refused = _accepted(baseline, here, grown(assessor, here.assessed, open_ids))
+        mended = Mended(baseline, here)
+        last, refused = _accepted(mended, grown(assessor, here.assessed, open_ids))
         rejected = refused[0] if refused else None
         added = last.best
         if not added.id or added.assessed is None:
             break
-        after, dropped = _without_superfluous(baseline, rounds, here, added)
+        after, dropped = _without_superfluous(mended, rounds, added)
         effect = added.id
         rounds.append(Round(effect, last, here, after, dropped))
         here = after
@@ -176,33 +184,60 @@ def _given(baseline: Baseline) -> Stage:
         accuracy(r.observation, m) for r, m in zip(baseline.rows, models, strict=True)
     )
     held = tuple(a for a in accuracies if a.observation.held_out)
-    return Stage(assessed, assessed.model, tuple(models), accuracies, held or accuracies)
+    return Stage(
+        assessed, assessed.model, tuple(models), accuracies, held or accuracies, _shares(accuracies)
+    )
 
 
-def _accepted(baseline: Baseline, here: Stage, step: Step) -> tuple[Step, tuple[str, ...]]:
+@dataclass
+class Mended:
+    """What may be added in a round, as the stages that it leads to; each is made once."""
+
+    baseline: Baseline
+    """Where the search starts."""
+    here: Stage
+    """Before the round."""
+    _stages: dict[str, Stage] = field(default_factory=dict)
+
+    def by(self, candidate: Candidate) -> Stage:
+        """Return the stage with a candidate that is fitted."""
+        if not candidate.id or candidate.assessed is None:
+            return self.here
+        if candidate.id not in self._stages:
+            self._stages[candidate.id] = stage(self.baseline, candidate.assessed)
+        return self._stages[candidate.id]
+
+    def compared(self, step: Step) -> Step:
+        """Return a step that leaves more than noise, weighed by what the mended models predict."""
+        return ordered(
+            [c if c.left is None else replace(c, left=self.by(c).errors) for c in step.candidates],
+            step.seed,
+        )
+
+
+def _accepted(mended: Mended, grown_step: Step) -> tuple[Step, tuple[str, ...]]:
     """Return a step without what is more probable but predicts what is not fitted worse."""
+    step = mended.compared(grown_step)
     refused: list[str] = []
-    alone = next(c.left for c in step.candidates if not c.id)
     for candidate in step.candidates:
         if not candidate.id or candidate.assessed is None:
             break
-        if candidate.left is None or alone is None or is_less(candidate.left, alone):
-            if not _is_worse(here, stage(baseline, candidate.assessed)):
-                break
+        after = mended.by(candidate)
+        better = candidate.left is None or is_less(after.errors, mended.here.errors)
+        if better and not _is_worse(mended.here, after):
+            break
         refused.append(candidate.id)
     return step.without(refused), tuple(refused)
 
 
 def _without_superfluous(
-    baseline: Baseline, rounds: Sequence[Round], here: Stage, added: Candidate
+    mended: Mended, rounds: Sequence[Round], added: Candidate
 ) -> tuple[Stage, tuple[str, ...]]:
     """Return the stage with a candidate, without effects of earlier rounds that it replaces.
 
     One that replaces them predicts what is not fitted no worse than they did.
     """
-    if added.assessed is None:
-        raise ValueError("a candidate that is added is fitted")
-    there, dropped = stage(baseline, added.assessed), list[str]()
+    there, dropped = mended.by(added), list[str]()
     for name in dict.fromkeys(r.effect for r in rounds if r.effect != added.id):
         assessed = there.assessed
         places = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == name]
@@ -211,11 +246,11 @@ def _without_superfluous(
         less = assessed.model
         for place in reversed(places):
             less = less.without(place)
-        without = baseline.assessor.assess(less, assessed.place)
+        without = mended.baseline.assessor.assess(less, assessed.place)
         if is_needed(without, assessed):
             continue
-        after = stage(baseline, without)
-        if not _is_worse(here, after):
+        after = stage(mended.baseline, without)
+        if not _is_worse(mended.here, after):
             there = after
             dropped.append(name)
     return there, tuple(dropped)

@@ -69,7 +69,7 @@ class Step:
 
     def without(self, ids: Collection[str]) -> Step:
         """Return the step without some candidates, refused as they do not predict."""
-        return _ordered([c for c in self.candidates if c.id not in ids], self.seed)
+        return ordered([c for c in self.candidates if c.id not in ids], self.seed)
 
     @cached_property
     def probabilities(self) -> dict[str, float]:
@@ -77,7 +77,7 @@ class Step:
         return _probabilities(self.candidates, self.seed)
 
 
-def _ordered(candidates: Sequence[Candidate], seed: int) -> Step:
+def ordered(candidates: Sequence[Candidate], seed: int) -> Step:
     """Return a step with the most probable first; the model as it is before its equals."""
     known = _probabilities(candidates, seed)
     order = sorted(candidates, key=lambda c: (-known[c.id], bool(c.id), -c.value))
@@ -118,8 +118,8 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
             continue
         found += _tried(assessor, now, chosen, len(ids))
     if not any(c.assessed.quiet for c in found if c.assessed):
-        found = [_predicting(c) for c in found]
-    return _ordered(found, assessor.seed)
+        found = [_predicting(c) if not c.id or c.value > now.value else c for c in found]
+    return ordered(found, assessor.seed)
 
 
 def _predicting(candidate: Candidate) -> Candidate:
@@ -144,8 +144,11 @@ def _tried(
         return []
     curve = assessor.curve_of(now.model)
     behind: dict[str, list[tuple[float, Gain, float]]] = {}
-    for place in dict.fromkeys((now.place, space.quiet)):
-        weighed = gains(space, trials, now.local, place.sizes(space.own_unit), curve)
+    best = now.predicting  # where more than noise is left, prediction decides
+    for place, local in {
+        best.place: best.local, space.quiet: now.local, now.place: now.local
+    }.items():
+        weighed = gains(space, trials, local, place.sizes(space.own_unit), curve)
         most = weighed[0].value
         for gain in weighed:
             behind.setdefault(gain.trial.id, []).append((most - gain.value, gain, most))

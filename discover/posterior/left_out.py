@@ -43,17 +43,18 @@ def left_out(assessed: Assessed) -> tuple[Array, Array]:
     records = np.array([u.record for u in space.sheet.units])
     parts = records if records.max() > 0 else np.arange(records.size)
     total = gram.sum(axis=0)
+    free = np.ones(prior.size, dtype=bool)
+    free[: local.held.size] = ~local.held
     found = np.zeros((2, parts.max() + 1))
     for part in range(parts.max() + 1):
         inside = parts == part
         own = gram[inside].sum(axis=0)
-        everywhere = np.ones(prior.size, dtype=bool)
-        elsewhere = np.diagonal(total - own)[:-1] > _NOTHING * np.diagonal(total)[:-1]
+        elsewhere = free & (np.diagonal(total - own)[:-1] > _NOTHING * np.diagonal(total)[:-1])
         if parts is not records:
-            elsewhere = everywhere
-        for place, (some, seen) in enumerate(((total, everywhere), (total - own, elsewhere))):
+            elsewhere = free
+        for place, (some, seen) in enumerate(((total, free), (total - own, elsewhere))):
             values = _beside(some, prior, seen, np.zeros(prior.size))
-            values = _beside(own, prior, ~seen, values)
+            values = _beside(own, prior, free & ~seen, values)
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
             found[place, part] = _relative(space.sheet, np.flatnonzero(inside), left)
     return found[0], found[1]

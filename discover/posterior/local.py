@@ -14,11 +14,12 @@ from discover.posterior.evidence import Solved, root_of, solved
 from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Evaluator, Number
 from discover.posterior.space import Part, Space
-from models.checks import Array
+from models.checks import Array, Indices
 from models.terms import Scales
 
 _ITERATIONS = 12  # steps of the climb in shape parameters at most
 _ENOUGH = 0.02  # nats, of a step's gain
+_NOTHING = 1e-200  # of a coefficient, in its unit: bounds are kept to 1e-300
 _HALVINGS = 6  # times at most that a step which gains nothing is shortened
 _STRIDE = 0.5  # of a shape parameter's value, or of its range, in one step at most
 
@@ -47,6 +48,11 @@ class Local:
         return np.array(
             [0.0 if n.shape is not None else self.model.value(n) for n in self.numbers]
         )
+
+    @property
+    def held(self) -> Indices:
+        """(P,) True for a coefficient that its sign holds at zero."""
+        return np.asarray((self.sign != 0.0) & (self.sign * self.values <= _NOTHING))
 
     def target(self, measured: Array) -> Array:
         """Return what the slopes times the numbers shall make (U, R) of a measured force."""

@@ -79,14 +79,15 @@ def gains(
         Whose departures are marginalised, at the scale that suits the model best.
     """
     target = local.target(space.sheet.target)[:, None]
-    model = np.concatenate([local.slopes, target], axis=1)
+    free = np.flatnonzero(~local.held)  # else these would take from what joins what they may not be
+    model = np.concatenate([local.slopes[:, free], target], axis=1)
     found: list[Gain] = []
     for some in _in_turn(trials.entries):
         columns = np.concatenate(
             [model, trials.columns[:, np.concatenate([e.places for e in some])]], axis=1
         )
         at = Comparison(space, columns, curve).at(sizes)
-        left = _beside_model(at, local)
+        left = _beside_model(at, local.spread[free])
         found += _gains(left, some, space.sheet.scale(columns[:, model.shape[1] :]))
     return sorted(found, key=lambda g: -g.value)
 
@@ -105,18 +106,18 @@ def _in_turn(entries: Sequence[Trial]) -> Iterator[list[Trial]]:
         yield some
 
 
-def _beside_model(at: Compared, local: Local) -> Array:
+def _beside_model(at: Compared, spread: Array) -> Array:
     """Return products of the measured force and trials (1 + T, 1 + T), the model taken out.
 
     At the scale of the curve that suits the model best.
     """
-    free = local.spread.size
+    free = spread.size
     values = []
     for some, normal in zip(at.gram, at.log_normal, strict=True):
         plain = some[: free + 1, : free + 1]
-        _, gained = without(plain, np.arange(free), local.spread)
+        _, gained = without(plain, np.arange(free), spread)
         values.append(normal - 0.5 * float(plain[-1, -1]) + gained)
-    return without(at.gram[int(np.argmax(values))], np.arange(free), local.spread)[0][free:, free:]
+    return without(at.gram[int(np.argmax(values))], np.arange(free), spread)[0][free:, free:]
 
 
 def _gains(left: Array, entries: Sequence[Trial], size: Array) -> list[Gain]:

@@ -8,10 +8,11 @@ import pytest
 import discover
 from discover.gap import close_gap, term_ids
 from discover.motion_fit import observe
+from discover.records import Campaign
 from discover.rows import compared_with, noise_percent, pooled_percent
 from models.checks import InputError
 from models.constitutive import FittedTerm, ForceModel, SegmentedModel
-from tests.discover.gap_data import campaign, device
+from tests.discover.gap_data import campaign, device, record
 
 BASE = "fit:inertia,viscous-damping"
 KEYS = {
@@ -200,3 +201,12 @@ def test_a_spring_in_series_is_no_play_in_soft_flanks():
     first = close_gap(campaign(law), BASE).rounds[0]
     assert first.effect == "series-compliance"
     assert "backlash" not in dict(first.alternatives)
+
+
+def test_what_a_sign_holds_at_zero_hides_nothing():
+    """One frequency: a spring is a negative inertance there, which no device has."""
+    rng = np.random.default_rng(5)
+    one = record(1.6, 0.01, lambda t, x, v, a: 2e5 * x, rng)
+    first = close_gap(Campaign("a spring", (one,)), "fit:inertia").rounds[0]
+    assert first.effect == "stiffness"
+    assert first.coefficient == pytest.approx(2e5, rel=0.01)
