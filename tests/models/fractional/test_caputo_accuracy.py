@@ -77,7 +77,9 @@ def test_start_with_position_velocity_acceleration(order, start):
             exact = exact + c * oracles.power(k, order, t[chosen])
     typical, largest = errors(derivative(x, order, dt)[chosen], exact)
     assert typical < 3e-9
-    assert largest < 1e-8
+    # What the samples' own last digits make at an end, where nothing averages them.
+    rounding = np.finfo(float).eps * np.abs(x).max() / dt**order / np.sqrt(np.mean(exact**2))
+    assert largest < max(1e-8, 4.0 * rounding)
 
 
 @pytest.mark.parametrize("order", [0.05, 0.7, 1.3, 1.95])
