@@ -114,8 +114,11 @@ def reversal_of(
     departed = np.searchsorted(curve.columns, own.columns)
     total = main.coefficient * plain
     total = total + np.einsum("k,ukr->ur", departing, whole[:, departed] - whole[:, :1])
-    some = [0, *departed]
-    terms = _few(whole[:, some], total, [curve.terms[k] for k in some])
+    few, columns = [curve.terms[k] for k in (0, *departed)], whole[:, [0, *departed]]
+    if any(main.shape.values()):  # a fitted curve of its own, beside the plainest
+        few, columns = [one, *few], np.concatenate([plain[:, None], columns], axis=1)
+    others = [i for i, n in enumerate(predicting.local.numbers) if n.term != at[0]]
+    terms = _few(columns, total, few, predicting.local.slopes[:, others])
     without = left + main.coefficient * plain
     sizes = assessed.place.sizes(space.own_unit)
     follows, sure, size, interval = _turning(space, sizes, without, whole, curve)
@@ -123,17 +126,23 @@ def reversal_of(
     return replace(found, differs=sizes.friction / found.sliding) if found.sliding > 0.0 else found
 
 
-def _few(whole: Array, total: Array, curves: Sequence[FittedTerm]) -> tuple[FittedTerm, ...]:
-    """Return the fewest curves, with positive shares, that leave next to nothing of the whole."""
-    flat = whole.transpose(1, 0, 2).reshape(whole.shape[1], -1)
-    goal = total.ravel()
-    every = range(flat.shape[0])
-    path = best_subsets(flat.T, goal, max_terms=_MOST, nonnegative=every, keep=1)
+def _few(
+    whole: Array, total: Array, curves: Sequence[FittedTerm], others: Array
+) -> tuple[FittedTerm, ...]:
+    """Return the fewest curves, with positive shares, that leave next to nothing of the whole.
+
+    But for what other terms (U, P, R) make of it: these are fitted anew beside the curves.
+    """
+    columns, goal = _rows(whole), total.ravel()
+    base, _ = np.linalg.qr(_rows(others))
+    columns, goal = (part - base @ (base.T @ part) for part in (columns, goal))
+    every = range(columns.shape[1])
+    path = best_subsets(columns, goal, max_terms=_MOST, nonnegative=every, keep=1)
     chosen = None
     for size in range(1, _MOST + 1):
         best = path.best(size)
-        if best is None:
-            continue
+        if best is None or (chosen is not None and best.misfit >= chosen.misfit):
+            continue  # one curve more that may not be negative
         chosen = best
         if best.misfit < _ENOUGH * goal.size:
             break
@@ -143,6 +152,11 @@ def _few(whole: Array, total: Array, curves: Sequence[FittedTerm]) -> tuple[Fitt
         replace(curves[i], coefficient=float(c))
         for i, c in zip(chosen.indices, chosen.coefficients, strict=True)
     )
+
+
+def _rows(columns: Array) -> Array:
+    """Return columns (U, K, R) as a matrix (U R, K)."""
+    return columns.transpose(0, 2, 1).reshape(-1, columns.shape[1])
 
 
 def _turning(
