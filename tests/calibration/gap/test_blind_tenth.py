@@ -18,7 +18,6 @@ def part(kind, place):
     return single_cases(kind, [DEVICE], [SIZES[place]])[place::3]
 
 
-
 @pytest.mark.parametrize(
     ("kind", "place"), [("first", 1), ("first", 2), ("second", 0), ("third", 1)]
 )
