@@ -41,7 +41,6 @@ def test_published_values_of_emps_lie_in_the_intervals_of_its_published_terms():
 
 
 @needs_data
-@pytest.mark.xfail(strict=True, reason="friction that turns over a speed takes 4 % of the damping")
 def test_emps_gives_its_published_values_for_its_published_terms():
     found = coefficients(run_study(read_campaign(FOLDER / "emps"), StudyOptions(terms=PUBLISHED)))
     assert found["inertia"] == pytest.approx(95.1, rel=0.01)
