@@ -66,7 +66,6 @@ def test_emps_searched_freely_differs_by_direction_and_has_no_fractional_term(em
 
 @pytest.mark.sweep
 @needs_data
-@pytest.mark.xfail(strict=True, reason="a false gain of 1.3 %, 190 N s/m (182 to 199) are stated")
 def test_emps_searched_freely_gives_its_published_values(emps):
     found = coefficients(emps)
     assert found["inertia"] == pytest.approx(95.1, rel=0.01)
