@@ -135,7 +135,7 @@ def found(device: Device) -> Found:
     for start in (*starts.values(), *others):
         way = replace(now, banded=start)
         for _ in range(MOST):
-            more = _with_one_more(device, way)
+            more = _with_one_more(way)
             if isinstance(more, Step):
                 if way is best or (way.joined == best.joined):
                     best = replace(best, last=more)
@@ -216,21 +216,21 @@ def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
     return result
 
 
-def _with_one_more(device: Device, way: Found) -> Found | Step:
+def _with_one_more(way: Found) -> Found | Step:
     """Return the bands with the term that makes the records most probable, or why there is none."""
     now = way.assessed
     there = {j.id for j in way.joined}
-    open_ids: Collection[str] = [i for i in device.extras if i not in there]
-    step = _that_predict(now, grown(device.assessor, now, open_ids))
+    open_ids: Collection[str] = [i for i in way.device.extras if i not in there]
+    step = _that_predict(now, grown(way.device.assessor, now, open_ids))
     while step.best.id and step.best.assessed is not None:
-        more = _without_superfluous(device, _joined(device, way, step))
+        more = _without_superfluous(_joined(way, step))
         if any(j.id == step.best.id for j in more.joined):
             return more
         step = _that_predict(now, step.without([step.best.id]))
     return step
 
 
-def _joined(device: Device, way: Found, step: Step) -> Found:
+def _joined(way: Found, step: Step) -> Found:
     """Return the bands with the best of what may join."""
     best = step.best
     if best.assessed is None:
@@ -244,10 +244,10 @@ def _joined(device: Device, way: Found, step: Step) -> Found:
         replace(j, terms=tuple(fitted.get(t.id, t) for t in j.terms)) if len(j.terms) == 1 else j
         for j in way.joined
     ]
-    return _searched(device, (*old, new), best.assessed.place, best.assessed)
+    return _searched(way.device, (*old, new), best.assessed.place, best.assessed)
 
 
-def _without_superfluous(device: Device, way: Found) -> Found:
+def _without_superfluous(way: Found) -> Found:
     """Return the bands without what has joined and need not, among the bands found with it."""
     for joined in way.joined:
         now = way.assessed
@@ -255,10 +255,10 @@ def _without_superfluous(device: Device, way: Found) -> Found:
         less = now.model
         for place in reversed(own):
             less = less.without(place)
-        without = device.assessor.assess(less, now.place)
+        without = way.device.assessor.assess(less, now.place)
         if not (is_told(now, own) and is_needed(without, now)):
             others = [j for j in way.joined if j is not joined]
-            way = _searched(device, others, without.place, without)
+            way = _searched(way.device, others, without.place, without)
     return way
 
 

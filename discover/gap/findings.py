@@ -46,7 +46,7 @@ def findings_of(
     return (
         Finding("note", text),
         *_about_start(baseline, found),
-        *_wrong_signs(baseline, found.refitted),
+        *_wrong_signs(found.refitted),
         *_refused_or_dropped(found),
         *_doubts(rounds),
         *_noisy(found.final),
@@ -132,12 +132,11 @@ def _named(identifier: str) -> str:
     return capitalize_first(short_name(identifier))
 
 
-def _wrong_signs(baseline: Baseline, at: Stage) -> list[Finding]:
+def _wrong_signs(at: Stage) -> list[Finding]:
     """Return which of the model's coefficients the records would have below zero."""
-    space = at.assessed.space
-    local, place = at.assessed.local, at.assessed.place
-    curve = baseline.assessor.curve_of(local.model)
-    solved = judged(local, local.beside(space, curve), place.sizes(space.own_unit)).solved
+    space, local = at.assessed.space, at.assessed.local
+    beside = local.beside(space, at.assessed.curve)
+    solved = judged(local, beside, at.assessed.place.sizes(space.own_unit)).solved
     deviation = np.sqrt(np.maximum(np.diagonal(solved.covariance), 0.0))
     result = []
     for i, n in enumerate(local.numbers):

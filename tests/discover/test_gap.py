@@ -183,10 +183,6 @@ def test_what_helps_most_is_named_and_its_formula_is_said_not_to_hold():
     assert any("its formula leaves more than noise" in f.text for f in found.findings)
 
 
-@pytest.mark.xfail(
-    reason="beside a remainder the least error of records left out decides, however little less",
-    strict=False,  # it depends on the processor's last digits whether more than noise is left
-)
 def test_a_spring_in_series_is_no_play_in_soft_flanks():
     """A device behind a rubber mount, by its complex stiffness."""
 
@@ -198,9 +194,10 @@ def test_a_spring_in_series_is_no_play_in_soft_flanks():
         phasor = reach * mount * own / (mount + own)
         return np.imag(phasor * np.exp(1j * omega * t))
 
-    first = close_gap(campaign(law), BASE).rounds[0]
-    assert first.effect == "series-compliance"
-    assert "backlash" not in dict(first.alternatives)
+    found = close_gap(campaign(law), BASE)
+    first = found.rounds[0]
+    assert "backlash" not in {first.effect, *dict(first.alternatives)}
+    assert found.final_gap_percent < 1.15 * found.noise_percent
 
 
 def test_what_a_sign_holds_at_zero_hides_nothing():
