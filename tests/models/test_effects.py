@@ -148,6 +148,9 @@ def test_drifts_start_at_nothing_and_settle():
     found = force(FittedTerm("sensor-drift", 7.0, {"settling_time": 0.01}))
     assert found[0] == 0.0
     assert found[-1] == pytest.approx(7.0, rel=1e-6)
+    roots = {"settling_time": 1e4, "stretching_exponent": 0.5}  # of what lasts far longer
+    early = force(FittedTerm("sensor-drift", 7.0, roots))
+    assert early[400] / early[100] == pytest.approx(2.0, rel=1e-2)
     gain = FittedTerm("sensor-gain", 0.1)
     np.testing.assert_allclose(force(*LINEAR, gain), 1.1 * force(*LINEAR))
 
