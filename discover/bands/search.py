@@ -121,14 +121,16 @@ class BandSearch:
         return np.array([[s, *own] for s in self.friction.scales])
 
     def one(
-        self, place: Place, shares: Array, start: Indices, *, others: bool = True
+        self, place: Place, shares: Array, start: Indices, *, others: bool = True,
+        power: float = 1.0,
     ) -> tuple[float, int, Divided]:
         """Return a division's log evidence at sizes, the place of the best scale, its answer.
 
-        Without `others` each band has the variant that it starts with, and no other.
+        Without `others` each band has the variant that it starts with, and no other. The
+        likelihood is taken to a power.
         """
         here = self.space.given(place.sizes(self.space.own_unit))
-        sums = sums_of_one(here, self.columns, self.common, self.scales(), shares)
+        sums = sums_of_one(here, self.columns, self.common, self.scales(), shares, power)
         answers = [
             divided(s, self.choice, start[None]) if others else as_started(s, self.choice, start)
             for s in sums

@@ -1,24 +1,79 @@
-"""Structures whose terms the records tell: none is stated for a term that predicts nothing."""
+"""What is told where more is left than noise: no term that predicts nothing, nothing for sure.
+
+No structure is right there, and evidence is sure of whichever is a little less wrong: it takes each
+line of a record's misfit for news. But the lines of a record miss the same thing. Each record is
+one deviation then, as the members of a cluster are one draw.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import logsumexp
 
 from discover.bands.extras import Found
+from discover.posterior.assess import Assessed
 from discover.posterior.spread import idle
+from models.checks import Array
 
 
 def told(found: Found) -> Found:
+    """Return the answer; where more is left than noise its structures are told with less surety.
+
+    The likelihood of each is taken to the power of the share of the lines that say something of
+    their own (a power posterior: Miller and Dunson, *J. Am. Stat. Assoc.* 114 (2019) 1113-1125).
+    """
+    if found.banded.quiet:
+        return found
+    found = _without_idle(found)
+    banded = found.banded
+    power = _own_share(found.assessed.predicting)
+    _, _, answer = found.search.one(
+        banded.place, banded.shares, np.array(banded.variants), power=power
+    )
+    cores = np.array([v.core for v in found.variants])
+    by_variant = banded.by_variant.copy()
+    for core in dict.fromkeys(cores):
+        own = cores == core
+        possible = np.where(np.isfinite(by_variant[:, own]), answer.by_variant[0][:, own], -np.inf)
+        by_variant[:, own] += _total(possible) - _total(by_variant[:, own])
+    return _with_values(found, by_variant)
+
+
+def _total(values: Array) -> Array:
+    """Return the logarithm (B, 1) of the sum of exponentials (B, V), 0 where all are none."""
+    total = logsumexp(values, axis=1, keepdims=True)
+    return np.where(np.isfinite(total), total, 0.0)
+
+
+def _own_share(assessed: Assessed) -> float:
+    """Return the share of the lines of records that say something of their own, 0 to 1.
+
+    Where a misfit shows in M lines of a record, of which a share R is no noise and common to them,
+    it is 1 / (1 + (M - 1) R): what a sample of clusters is worth (L. Kish, *Survey Sampling*,
+    1965).
+    """
+    sheet = assessed.space.sheet
+    left = (sheet.target - assessed.local.force) ** 2
+    whole = left.sum(axis=1)
+    lines = sum(
+        sheet.rows[u.record].size[u.part].size if u.basis is None else u.basis.shape[1]
+        for u in sheet.units
+    )
+    common = max(1.0 - lines / max(float(whole.sum()), 1e-300), 0.0)
+    shown = whole**2 / np.maximum(np.sum(left**2, axis=1), 1e-300)
+    return 1.0 / (1.0 + (float(np.mean(shown)) - 1.0) * common)
+
+
+def _without_idle(found: Found) -> Found:
     """Return the answer with the most probable structures all of whose terms are told.
 
     Beside a remainder a structure may be probable for terms that, where terms alone predict, may
     as well be nothing: they stand for a part of the remainder. Structures that have them in a
-    band are left out there, one term at a time, as those that are alike hide each other. Where no
-    more than noise is left, evidence has weighed this already.
+    band are left out there, one term at a time, as those that are alike hide each other.
     """
-    while not found.banded.quiet:
+    while True:
         banded = found.banded
         doubtful = idle(found.assessed.predicting)
         by_variant = banded.by_variant.copy()
@@ -33,7 +88,13 @@ def told(found: Found) -> Found:
             if np.any(np.isfinite(by_variant[band, ~held])):  # else nothing may take its place
                 by_variant[band, held] = -np.inf
         if np.array_equal(by_variant, banded.by_variant):
-            break
-        variants = tuple(found.search.of_best_core(values) for values in by_variant)
-        found = replace(found, banded=replace(banded, by_variant=by_variant, variants=variants))
-    return found
+            return found
+        found = _with_values(found, by_variant)
+
+
+def _with_values(found: Found, by_variant: Array) -> Found:
+    """Return the answer with other log evidence (B, V) of each band's variants."""
+    variants = tuple(found.search.of_best_core(values) for values in by_variant)
+    return replace(
+        found, banded=replace(found.banded, by_variant=by_variant, variants=variants)
+    )

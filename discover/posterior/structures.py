@@ -82,7 +82,8 @@ class Sums:
 
 
 def sums_of_one(
-    here: Given, core: Indices, common: Sequence[Part], scales: Array, shares: Array
+    here: Given, core: Indices, common: Sequence[Part], scales: Array, shares: Array,
+    power: float = 1.0,
 ) -> list[Sums]:
     """Return the sums of one division into bands, at several scales of what bands share.
 
@@ -98,9 +99,11 @@ def sums_of_one(
         Of each part.
     shares : ndarray, shape (B, U)
         How much of each unit is in each band.
+    power : float
+        To which the likelihood is taken: below 1, the lines say less than as many of their own.
     """
     at = _columns(common)
-    gram = here.gram(
+    gram = power * here.gram(
         [(at, None), *((core, share) for share in shares), (np.array([here.force]), None)]
     )
     found = []
@@ -109,7 +112,8 @@ def sums_of_one(
         factor = root_of(gram[: at.size, : at.size], spread)
         half = np.linalg.solve(factor, spread[:, None] * gram[: at.size, at.size :])
         left = gram[at.size :, at.size :] - half.T @ half
-        normal = here.log_centre - float(np.sum(np.log(np.diag(factor)))) - 0.5 * left[-1, -1]
+        normal = power * here.log_centre
+        normal -= float(np.sum(np.log(np.diag(factor)))) + 0.5 * left[-1, -1]
         bands, size = shares.shape[0], core.size
         whole = left[:-1, :-1].reshape(bands, size, bands, size).transpose(0, 2, 1, 3)
         side = left[:-1, -1].reshape(bands, size)

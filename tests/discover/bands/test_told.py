@@ -8,6 +8,7 @@ from discover.bands.extras import found
 from discover.bands.told import told
 from discover.posterior.spread import idle
 from discover.study import StudyOptions
+from discover.study.bands import core_probabilities
 from discover.study.prepare import prepare
 from tests.discover.exact import campaign
 
@@ -34,3 +35,14 @@ def working(device, answer):
     best = answer.assessed.predicting
     count = sum(len(p.terms) for v in answer.banded.variants for p in answer.variants[v].parts)
     return not any(place < count for place in idle(best))
+
+
+def test_few_records_that_no_law_holds_for_make_no_structure_sure():
+    """By evidence one is: it is a little less wrong than the others."""
+    records = campaign(yielding, frequencies=(0.3, 1.0), amplitudes=(0.01, 0.02), noise=0.002)
+    before = found(replace(prepare(records, StudyOptions()).device, extras=()))
+    after = told(before)
+    assert not before.banded.quiet
+    assert after.banded.bands == 1
+    assert max(core_probabilities(before, 0).values()) > 0.95
+    assert max(core_probabilities(after, 0).values()) < 0.8
