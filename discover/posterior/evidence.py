@@ -39,7 +39,8 @@ def root_of(gram: Array, spread: Array) -> Array:
         half = np.sqrt(np.maximum(values, 1.0))[..., :, None] * np.swapaxes(vectors, -1, -2)
         upper = np.linalg.qr(half, mode="r")
         lower = np.swapaxes(upper, -1, -2)
-        return np.asarray(lower * np.sign(np.diagonal(upper, axis1=-2, axis2=-1))[..., None, :])
+        turned = np.where(np.diagonal(upper, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)
+        return np.asarray(lower * turned[..., None, :])
 
 
 def solved(

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from discover.posterior.assess import Assessed
+from discover.posterior.evidence import root_of
 from discover.posterior.sheet import Sheet
 from models.checks import Array, Indices
 
@@ -39,11 +40,11 @@ def left_out(assessed: Assessed) -> tuple[Array, Array]:
     target = local.target(space.sheet.target)[:, None]
     columns = np.concatenate([local.slopes, departing, target], axis=1)
     gram = here.within(columns)
-    prior = np.concatenate([local.spread, wide]) ** -2.0
+    spread = np.concatenate([local.spread, wide])
     records = np.array([u.record for u in space.sheet.units])
     parts = records if records.max() > 0 else np.arange(records.size)
     total = gram.sum(axis=0)
-    free = np.ones(prior.size, dtype=bool)
+    free = np.ones(spread.size, dtype=bool)
     free[: local.held.size] = ~local.held
     found = np.zeros((2, parts.max() + 1))
     for part in range(parts.max() + 1):
@@ -53,21 +54,22 @@ def left_out(assessed: Assessed) -> tuple[Array, Array]:
         if parts is not records:
             elsewhere = free
         for place, (some, seen) in enumerate(((total, free), (total - own, elsewhere))):
-            values = _beside(some, prior, seen, np.zeros(prior.size))
-            values = _beside(own, prior, free & ~seen, values)
+            values = _beside(some, spread, seen, np.zeros(spread.size))
+            values = _beside(own, spread, free & ~seen, values)
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
             found[place, part] = _relative(space.sheet, np.flatnonzero(inside), left)
     return found[0], found[1]
 
 
-def _beside(gram: Array, prior: Array, free: Indices, values: Array) -> Array:
+def _beside(gram: Array, spread: Array, free: Indices, values: Array) -> Array:
     """Return coefficients (P,): the free ones by products (P + 1, P + 1), beside the others."""
     if not np.any(free):
         return values
     side = gram[:-1, -1] - gram[:-1, :-1] @ np.where(free, 0.0, values)
-    inner = gram[:-1, :-1][np.ix_(free, free)] + np.diag(prior[free])
+    factor = root_of(gram[:-1, :-1][np.ix_(free, free)], spread[free])
     result = values.copy()
-    result[free] = np.linalg.solve(inner, side[free])
+    half = np.linalg.solve(factor, spread[free] * side[free])
+    result[free] = spread[free] * np.linalg.solve(factor.T, half)
     return result
 
 

@@ -156,7 +156,8 @@ def _few(
 
 def _rows(columns: Array) -> Array:
     """Return columns (U, K, R) as a matrix (U R, K)."""
-    return columns.transpose(0, 2, 1).reshape(-1, columns.shape[1])
+    units, count, rows = columns.shape
+    return columns.transpose(0, 2, 1).reshape(units * rows, count)
 
 
 def _turning(

@@ -18,6 +18,8 @@ from models.terms import Scales, Shape, Term
 
 _CURVE_SCALES = (1.0, 0.3, 0.1, 0.03, 0.01)
 """Sizes of a term with a curve of its own, over that at which it makes the whole force."""
+_MOST_HELD = 2**29
+"""Bytes of products at sizes that are held: the oldest are made again where they are asked for."""
 _OWN = (0, 1, 2)
 """Thirds of a term's curves, from each of which one may be a unit's own."""
 
@@ -89,7 +91,7 @@ class Space:
 
     def given(self, sizes: Sizes) -> Given:
         """Return what products of the columns under the inverse covariance are made of."""
-        known = self._given.get(sizes)
+        known = self._given.pop(sizes, None)  # so that what was asked for last stands last
         if known is None:
             products = self._products.get(sizes.loud)
             if products is None:
@@ -98,8 +100,18 @@ class Space:
                 products = Products(self.sheet, self.own, whole, sizes.loud)
                 self._products[sizes.loud] = products
             known = given(products, sizes)
-            self._given[sizes] = known
+        self._given[sizes] = known
+        self._let_go()
         return known
+
+    def _let_go(self) -> None:
+        """Let go of products at sizes asked for longest ago, where all take too much."""
+        held = sum(g.left.nbytes + g.taken.nbytes for g in self._given.values())
+        while len(self._given) > 1 and held > _MOST_HELD:
+            oldest = self._given.pop(next(iter(self._given)))
+            held -= oldest.left.nbytes + oldest.taken.nbytes
+            if all(g.products is not oldest.products for g in self._given.values()):
+                self._products.pop(oldest.products.loud, None)
 
     def forget(self) -> None:
         """Let go of products, which are many: they are made again where they are asked for."""
