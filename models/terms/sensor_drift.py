@@ -24,7 +24,7 @@ def column(motion: Motion, shape: Shape) -> Array:
     there = share(motion, shape)
     if shape["over"] > 0.0:
         return np.full_like(motion.time, there)
-    elapsed = motion.time - motion.time[0]
+    elapsed = np.maximum(motion.time - motion.time[0], 0.0)
     constant = shape["settling_time"]
     if constant == 0.0:
         return np.asarray(there * elapsed ** int(shape["power"]))
