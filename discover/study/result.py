@@ -19,7 +19,7 @@ from discover.records import Campaign, Finding, Record, checked_campaign
 from discover.rows import Unexplained
 from discover.simulate import ForceComparison, simulate_forces
 from discover.study.verdict import headline, verdict_lines
-from discover.words import error_lines, interval, raised, significant, term_name
+from discover.words import error_lines, interval, raised, significant, term_name, warning_lines
 from models.checks import InputError
 from models.constitutive import FittedTerm, SegmentedModel
 
@@ -293,7 +293,11 @@ class Study:
 
     def _lines(self) -> list[str]:
         document = self.to_dict()
-        return [*error_lines(document), *verdict_lines(document)]
+        of_records = [f for f in document["findings"] if f.get("record") is not None]
+        return [
+            *error_lines(document), *verdict_lines(document),
+            *warning_lines({"findings": of_records}),
+        ]
 
     @property
     def plot(self) -> StudyPlots:

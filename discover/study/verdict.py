@@ -308,11 +308,11 @@ def dean_line(document: Mapping[str, Any]) -> str:
 
 
 def next_line(document: Mapping[str, Any]) -> str:
-    """Say which test to run next, or that none is needed."""
+    """Say which test to run next, or that none would tell structures apart."""
     test = document.get("next_test")
     if not test or test.get("frequency_hz") is None:
         if document.get("identifiable", True):
-            return "Next test: none needed; no pair of structures is left to tell apart."
+            return "Next test: none; no pair of structures is left to tell apart."
         return "Next test: none proposed."
     amplitude = significant(1e3 * test["amplitude_m"], 3)
     purpose = next_purpose(test)
