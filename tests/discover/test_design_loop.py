@@ -31,7 +31,7 @@ def fractional_campaign(order, product, frequencies, amplitudes, *, noise=0.01, 
     return Campaign("exact fractional records", tuple(records), device=TWELVE)
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 def test_designed_device_runs_on_the_rig_and_the_report_says_whether_one_model_serves():
     result = minimise_critical_frequency(TWELVE, front=False)
     loop = close_loop(result)

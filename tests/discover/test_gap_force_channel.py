@@ -74,7 +74,7 @@ def test_a_cell_whose_gain_goes_with_load_is_the_sensor_s(bend):
     "response",
     [
         lambda omega: 1.0 / (1.0 + 1j * omega * RC),
-        pytest.param(butterworth, marks=FEW_SHAPES),
+        pytest.param(butterworth, marks=[pytest.mark.sweep, FEW_SHAPES]),
     ],
     ids=["resistor and capacitor", "Butterworth"],
 )  # fmt: skip
@@ -104,6 +104,7 @@ def logged(read, noise=3e-3):
     return Campaign("logged", tuple(records))
 
 
+@pytest.mark.sweep
 @FEW_SHAPES
 def test_a_force_that_was_filtered_after_it_was_sampled_is_a_delay():
     top, bottom = butter(1, 25.0, fs=RATE)
