@@ -27,6 +27,8 @@ _AMPLITUDES = 9  # likewise
 _LINES = 8  # the mean and seven harmonics carry what tells structures apart
 _SAMPLES = 128  # of one cycle
 _WIDER = 2.0  # beyond the tested frequencies, where the rig's limits leave it open
+_ROUNDING = 1e-10
+"""Of the variance of a test's lines, below which none of their directions is told apart."""
 _LEAST_NOISE = 1e-3  # of the force: no new test is taken for better than this
 _STEP = 1e-4  # of a number, for its slope
 
@@ -184,7 +186,8 @@ def expected_gain(
     """
     lines = [r.lines(frequency, amplitude) for r in (first, second)]
     level = max(noise, _LEAST_NOISE) * max(float(np.linalg.norm(m)) for m, _ in lines)
-    floor = level**2 * np.eye(lines[0][0].size)
+    known = _ROUNDING * max(float(np.trace(c)) for _, c in lines)  # what rounding leaves of it
+    floor = max(level**2, known) * np.eye(lines[0][0].size)
     means = [m for m, _ in lines]
     covariances = [floor + c for _, c in lines]
     return weight * _divergence(means, covariances) + (1.0 - weight) * _divergence(

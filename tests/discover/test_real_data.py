@@ -96,3 +96,19 @@ def test_silverbox_is_a_duffing_oscillator():
     }
     assert study.relative_error_percent < 1.2
     assert study.held_out_relative_error_percent < 1.6
+
+
+STRANGE = (
+    "elastomer-vhb4910", "foot-single-cam", "fsae-damper-hard", "fsae-damper-soft",
+    "inerter-cvt-steady", "mr-utfsm-0p5A", "seal-oring-1bar", "seal-xring",
+)  # fmt: skip
+
+
+@pytest.mark.sweep
+@needs_data
+@pytest.mark.parametrize("name", STRANGE)
+def test_machines_that_no_structure_holds_for_have_no_sure_fractional_one(name):
+    study = run_study(read_campaign(FOLDER / name))
+    assert study.bands[0].remainder.percent > study.bands[0].noise_percent
+    assert not any(b.structure == "FOIM" and b.probability >= 0.8 for b in study.bands)
+
