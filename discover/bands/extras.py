@@ -183,6 +183,7 @@ def _searched(device: Device, joined: Sequence[Joined], place: Place | None,
         {name: values[name] for name in device.coordinates},
     )
     bands = searched(search, place, bands=device.bands)
+    space.forget()
     chosen = bands[-1] if device.bands is not None else max(bands, key=lambda b: b.value)
     return Found(device, chosen, tuple(bands), search, tuple(joined), None)
 

@@ -99,7 +99,7 @@ def test_silverbox_is_a_duffing_oscillator():
 
 
 STRANGE = (
-    "elastomer-vhb4910", "foot-single-cam", "fsae-damper-hard", "fsae-damper-soft",
+    "foot-single-cam", "fsae-damper-hard", "fsae-damper-soft",
     "inerter-cvt-steady", "mr-utfsm-0p5A", "seal-oring-1bar", "seal-xring",
 )  # fmt: skip
 
