@@ -196,7 +196,7 @@ def test_a_spring_in_series_is_no_play_in_soft_flanks():
 
     found = close_gap(campaign(law), BASE)
     first = found.rounds[0]
-    assert "backlash" not in {first.effect, *dict(first.alternatives)}
+    assert first.effect != "backlash"
     assert found.final_gap_percent < 1.15 * found.noise_percent
 
 
