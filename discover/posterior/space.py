@@ -18,7 +18,7 @@ from models.terms import Scales, Shape, Term
 
 _CURVE_SCALES = (1.0, 0.3, 0.1, 0.03, 0.01)
 """Sizes of a term with a curve of its own, over that at which it makes the whole force."""
-_MOST_HELD = 2**29
+_MOST_HELD = 2**31
 """Bytes of products at sizes that are held: the oldest are made again where they are asked for."""
 _OWN = (0, 1, 2)
 """Thirds of a term's curves, from each of which one may be a unit's own."""
