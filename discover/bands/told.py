@@ -1,8 +1,8 @@
 """What is told where more is left than noise: no term that predicts nothing, nothing for sure.
 
 No structure is right there, and evidence is sure of whichever is a little less wrong: it takes each
-line of a record's misfit for news. But the lines of a record miss the same thing. Each record is
-one deviation then, as the members of a cluster are one draw.
+line of a record's misfit for news. But the lines in which a record's misfit shows miss the same
+thing: together they say as much as the members of a cluster do.
 """
 
 from __future__ import annotations

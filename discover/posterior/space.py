@@ -100,14 +100,14 @@ class Space:
                 products = Products(self.sheet, self.own, whole, sizes.loud)
                 self._products[sizes.loud] = products
             known = given(products, sizes)
+            self._make_room(known.left.nbytes + known.taken.nbytes)
         self._given[sizes] = known
-        self._let_go()
         return known
 
-    def _let_go(self) -> None:
-        """Let go of products at sizes asked for longest ago, where all take too much."""
-        held = sum(g.left.nbytes + g.taken.nbytes for g in self._given.values())
-        while len(self._given) > 1 and held > _MOST_HELD:
+    def _make_room(self, new: int) -> None:
+        """Let go of products at sizes asked for longest ago, where all take too many bytes."""
+        held = new + sum(g.left.nbytes + g.taken.nbytes for g in self._given.values())
+        while self._given and held > _MOST_HELD:
             oldest = self._given.pop(next(iter(self._given)))
             held -= oldest.left.nbytes + oldest.taken.nbytes
             if all(g.products is not oldest.products for g in self._given.values()):

@@ -183,8 +183,9 @@ def test_what_helps_most_is_named_and_its_formula_is_said_not_to_hold():
     assert any("its formula leaves more than noise" in f.text for f in found.findings)
 
 
-def test_a_spring_in_series_is_no_play_in_soft_flanks():
-    """A device behind a rubber mount, by its complex stiffness."""
+@pytest.fixture(scope="module")
+def mounted():
+    """Return what is found of a device behind a rubber mount, by its complex stiffness."""
 
     def law(t, x, v, a):
         reach = np.abs(x).max()
@@ -194,10 +195,22 @@ def test_a_spring_in_series_is_no_play_in_soft_flanks():
         phasor = reach * mount * own / (mount + own)
         return np.imag(phasor * np.exp(1j * omega * t))
 
-    found = close_gap(campaign(law), BASE)
-    first = found.rounds[0]
-    assert first.effect != "backlash"
-    assert found.final_gap_percent < 1.15 * found.noise_percent
+    return close_gap(campaign(law), BASE)
+
+
+def test_a_spring_in_series_is_not_named_play_in_soft_flanks(mounted):
+    assert mounted.rounds[0].effect != "backlash"
+    assert mounted.final_gap_percent < 1.15 * mounted.noise_percent
+
+
+@pytest.mark.xfail(
+    reason="beside a remainder the least error of records left out decides, however little less",
+    strict=False,  # it depends on the processor's last digits whether more than noise is left
+)
+def test_a_spring_in_series_is_no_play_in_soft_flanks(mounted):
+    first = mounted.rounds[0]
+    assert first.effect == "series-compliance"
+    assert "backlash" not in dict(first.alternatives)
 
 
 def test_what_a_sign_holds_at_zero_hides_nothing():
