@@ -130,8 +130,7 @@ def observe_sine(
     multiples: Array = frequency * np.arange(count + 1, dtype=np.float64)
     if record.uniform:
         density = density_between_lines(residual, record.step, frequency, multiples)
-        phase = 2.0 * np.pi * frequency * time + velocity_phase(displacement)
-        spectrum = noise_spectrum(time, force, frequency, record.step, phase)
+        spectrum = noise_spectrum(time, force, frequency, record.step)
         noise = float(np.sqrt(spectrum.power))
     else:
         spectrum = None

@@ -20,7 +20,6 @@ _SLOPE_FROM = 8  # lowest ranges, which tell the rise to low frequencies
 _STEEPEST = 2.0  # power of the frequency, with which noise may rise to low ones
 _CLEAR = 1.6  # bins from a harmonic: nearer ones are left out
 _LEAST_LEFT = 0.2  # of the noise's power, after a harmonic for every cycle was taken out
-_REVERSALS = (0.01, 0.03, 0.1)  # of the greatest speed: ranges over which friction reverses
 _LEAST = 1e-300  # N^2/Hz, so that logarithms stay finite
 _LINE = 15.0  # times the level: noise alone is above it once in three million bins
 
@@ -42,9 +41,7 @@ class NoiseSpectrum:
         return np.asarray(np.exp(np.interp(np.log(frequencies), *known)))
 
 
-def noise_spectrum(
-    time: Array, force: Array, frequency: float, step: float, phase: Array
-) -> NoiseSpectrum:
+def noise_spectrum(time: Array, force: Array, frequency: float, step: float) -> NoiseSpectrum:
     """Return the noise of a sine test's force.
 
     What repeats from cycle to cycle and every slow change is taken out first; what then lies
@@ -59,12 +56,10 @@ def noise_spectrum(
         Of the test, Hz.
     step : float
         Sampling interval, s.
-    phase : ndarray, shape (N,)
-        rad, of the displacement, a sine: friction jumps where its cosine changes sign.
     """
     found = unrepeated(time, force, frequency, step)
     if found is None:
-        found = _between_harmonics(time, force, frequency, step, phase)
+        found = _between_harmonics(time, force, frequency, step)
     level = smooth_spectrum(found.frequencies, found.density, found.width, 0.5 / step)
     rising = _with_rise(level.frequencies, level.density, 0.1 * found.width)
     return NoiseSpectrum(*rising, level.power)
@@ -99,16 +94,14 @@ def smooth_spectrum(
     return NoiseSpectrum(np.array(middle), np.array(level), power)
 
 
-def _between_harmonics(
-    time: Array, force: Array, frequency: float, step: float, phase: Array
-) -> Unrepeated:
-    """Return what a fit of many harmonics leaves: the cycles are too few to compare them."""
+def _between_harmonics(time: Array, force: Array, frequency: float, step: float) -> Unrepeated:
+    """Return what a fit of many harmonics leaves: cycles or samples are too few to compare."""
     per_cycle = 1.0 / (step * frequency)
-    count = int(min(_MOST_HARMONICS, 0.45 * per_cycle, (time.size - 8) // 4))
+    count = int(max(min(_MOST_HARMONICS, 0.45 * per_cycle, (time.size - 8) // 4), 1))
     design = harmonic_design(time, frequency, count)[:, : 2 * count + 1]
     centred_time = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
     trend = np.polynomial.legendre.legvander(centred_time, _SLOW)[:, 1:]
-    whole = np.concatenate([design, trend, _jumps(phase)], axis=1)
+    whole = np.concatenate([design, trend], axis=1)
     gram = whole.T @ whole + 1e-9 * time.size * np.eye(whole.shape[1])
     left = force - whole @ np.linalg.solve(gram, whole.T @ force)
     at = np.rint((time - time[0]) / step).astype(int)
@@ -127,26 +120,18 @@ def _between_harmonics(
     return Unrepeated(frequencies[clear], density[clear], float(width))
 
 
-def _jumps(phase: Array) -> Array:
-    """Return what jumps where motion reverses: its harmonics beyond Nyquist alias between lines."""
-    v, x = np.cos(phase), np.sin(phase)
-    direction = np.sign(v)
-    columns = [np.tanh(v / s) for s in _REVERSALS]
-    return np.stack([direction, direction * x, *columns], axis=1)
-
-
 def _level(density: Array) -> float:
     """Return the level of exponentially scattered densities, whatever the greatest one is.
 
-    The median does not see a hum; the mean of all but the greatest does see a resonance. A hum
-    also fills the bins beside its own.
+    That is their mean, which also sees a resonance; a hum, which fills the bins beside its own
+    too, is left out.
     """
-    middle = float(np.median(density)) / float(np.log(2.0))
     top = int(np.argmax(density))
-    if density[top] > _LINE * middle:
-        return max(middle, float(np.mean(np.delete(density, slice(max(top - 2, 0), top + 3)))))
-    expected = density.size - float(np.sum(1.0 / np.arange(1, density.size + 1)))
-    return max(middle, float(density.sum() - density[top]) / expected)
+    middle = float(np.median(density)) / float(np.log(2.0))
+    if density[top] <= _LINE * middle:
+        return float(np.mean(density))
+    others = np.delete(density, slice(max(top - 2, 0), top + 3))
+    return float(np.mean(others)) if others.size else middle
 
 
 def _with_rise(frequencies: Array, level: Array, lowest: float) -> tuple[Array, Array]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import convolve1d
 from scipy.sparse import csr_array
 
 from discover.motion_fit.harmonic_lines import harmonic_lines
@@ -19,11 +20,12 @@ from discover.sine_fit import harmonic_design, moments
 from models.checks import Array
 from models.compiled import compiled
 
-FEWEST_CYCLES = 2.5  # that can be compared
+_FEWEST_CYCLES = 1.5  # that can be compared
 _ENOUGH_CYCLES = 6.0  # of a long record, that are compared
 _FEWEST_SAMPLES, _MOST_SAMPLES = 32, 60_000  # that are compared
 _FEWEST_BINS = 5  # from which a level of noise can be told
 _HALF_WIDTH = 0.75  # of a sample's share of the cycle, to either side
+_FEWEST_NEIGHBOURS = 4.0  # in phase, itself among them: fewer leave nothing beside a line
 _LEAST_WEIGHT = 1e-3  # of a neighbour in phase, against one at the same phase
 _SLOPED = 1e-3  # of the weights' square, by which their phases have to differ for a slope
 _HARMONICS = 31  # lowest of the force, taken out before cycles are compared
@@ -45,6 +47,7 @@ _NEAREST = 8  # samples in phase, to either side, that one is compared with at m
 _LEAST_GAIN = 0.35  # of the noise's power, that has to be left beside a harmonic
 _CLEAR = 1.5  # bins from a harmonic: nearer ones also see what changes it slowly
 _ENOUGH_BINS = 30  # clear of harmonics, with which those beside them are not needed
+_SPREAD = np.array([1.0, 16.0, 36.0, 16.0, 1.0]) / 70.0  # of a wave's power over bins, by the taper
 Kept = NDArray[np.bool_]
 
 
@@ -75,17 +78,18 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     Returns
     -------
     Unrepeated or None
-        None with fewer than two and a half cycles, or samples too few to compare. Of a long
+        None with fewer than one and a half cycles, or samples too few to compare. Of a long
         record the first part is used.
     """
     most = max(_MOST_SAMPLES, round(_ENOUGH_CYCLES / (step * frequency)))
     time, force = time[:most], force[:most]
-    if float(time[-1] - time[0]) * frequency < FEWEST_CYCLES or time.size < _FEWEST_SAMPLES:
+    if float(time[-1] - time[0]) * frequency < _FEWEST_CYCLES or time.size < _FEWEST_SAMPLES:
         return None
     phase = np.mod((time - time[0]) * frequency, 1.0)
     order = np.argsort(phase, kind="stable")
-    same = _same_phase(phase[order], order, _HALF_WIDTH * step * frequency)
     cycles = time.size * step * frequency
+    half = max(_HALF_WIDTH, _FEWEST_NEIGHBOURS / (2.0 * cycles)) * step * frequency
+    same = _same_phase(phase[order], order, half)
     own = same.diagonal()
     steady = _without_lowest(time, force, frequency, step)
     repeated = same @ steady
@@ -100,15 +104,14 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     whole = np.zeros(at[-1] + 1)
     whole[at] = np.where(kept, left, 0.0)
     frequencies, density = power_density(whole, step)
-    share = np.zeros(whole.size)
-    share[at] = kept
     taper = np.hanning(whole.size + 2)[1:-1] ** 2
     width = float(frequencies[1])
-    gain = _response(same, time, np.flatnonzero(kept), width, frequencies.size)
+    gain = _response(same, time, taper[at] * kept, width, frequencies.size)
     if cycles < _MANY_CYCLES:
-        bins = np.searchsorted(frequencies, (_changing(time.size) + _BESIDE) * frequency)
+        bins = np.searchsorted(frequencies, (_changing(time.size, cycles) + _BESIDE) * frequency)
         gain[:bins] *= _left_by(changes, same, at, kept, int(bins))
-    gain *= float(taper @ share) / float(np.sum(taper))
+    gain = convolve1d(gain, _SPREAD, mode="nearest")
+    gain *= float(taper[at] @ kept) / float(np.sum(taper))
     spacing = frequency / width
     apart = np.abs(np.mod(frequencies / frequency + 0.5, 1.0) - 0.5) * spacing
     seen = gain > _LEAST_GAIN * float(np.max(gain))
@@ -131,9 +134,10 @@ def _without_lowest(time: Array, force: Array, frequency: float, step: float) ->
     return np.asarray(force - fit.fitted(fit.solve(force[None])[0]))
 
 
-def _changing(samples: int) -> int:
-    """Return the number of harmonics whose size may change."""
-    return int(np.clip(samples // _SAMPLES_EACH, 1, _CHANGING))
+def _changing(samples: int, cycles: float) -> int:
+    """Return the number of harmonics whose size may change: changes of few cycles are noise too."""
+    most = _CHANGING if cycles >= _CYCLES_EACH else 1
+    return int(np.clip(samples // _SAMPLES_EACH, 1, most))
 
 
 def _changes(
@@ -147,7 +151,7 @@ def _changes(
     centred_time = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
     order = int(np.clip(cycles // _CYCLES_EACH, 1, _SLOW))
     slow = np.polynomial.legendre.legvander(centred_time, order)[:, 1:]
-    lowest = harmonic_design(time, frequency, _changing(time.size))
+    lowest = harmonic_design(time, frequency, _changing(time.size, cycles))
     carriers = np.column_stack([lowest, repeated])
     changes = (slow[:, :, None] * carriers[:, None, :]).reshape(time.size, -1)
     moved = changes - same @ changes
@@ -194,7 +198,8 @@ def _left_by(
     spread = np.zeros((before.shape[1], size))
     spread[:, at] = before.T
     lines = np.fft.rfft(spread, axis=1)[:, :bins]
-    return np.asarray(1.0 - np.sum(np.abs(lines) ** 2, axis=0) / power)
+    # A harmonic has no power, but for rounding.
+    return np.asarray(np.clip(1.0 - np.sum(np.abs(lines) ** 2, axis=0) / power, 0.0, 1.0))
 
 
 @compiled(cache=True)
@@ -287,13 +292,13 @@ def _smooth_phases(
     return kept if np.mean(kept) > _LEAST_KEPT else known
 
 
-def _response(
-    same: csr_array, time: Array, kept: NDArray[np.intp], width: float, size: int
-) -> Array:
+def _response(same: csr_array, time: Array, counts: Array, width: float, size: int) -> Array:
     """Return the power that the comparison leaves of a wave, mean over samples, (F,).
 
-    At `size` multiples of `width` (Hz): each wave is a product of a coarse and a fine one.
+    Of the samples each `counts` (N,) so much. At `size` multiples of `width` (Hz): each wave is a
+    product of a coarse and a fine one.
     """
+    kept = np.flatnonzero(counts)
     chosen = kept[np.unique(np.linspace(0, kept.size - 1, _PROBED).astype(int))]
     block = int(np.ceil(np.sqrt(size)))
     steps = np.arange(block)
@@ -303,5 +308,5 @@ def _response(
         turns = 2j * np.pi * width * (time[same.indices[part]] - time[i])
         fine = np.exp(np.outer(turns, steps))
         coarse = same.data[part, None] * np.exp(np.outer(turns, block * steps))
-        total += np.abs(1.0 - (coarse.T @ fine).ravel()) ** 2
-    return np.asarray(total[:size] / chosen.size)
+        total += counts[i] * np.abs(1.0 - (coarse.T @ fine).ravel()) ** 2
+    return np.asarray(total[:size] / np.sum(counts[chosen]))

@@ -93,7 +93,6 @@ def test_squared_lines_add_up_to_the_tapered_mean_square():
     assert total == pytest.approx(np.mean(force**2), rel=0.03)
 
 
-@pytest.mark.xfail(strict=True, reason="12 % more is stated than there is")
 def test_variance_of_lines_is_that_of_the_force_s_noise():
     scale = []
     for seed in range(5):
