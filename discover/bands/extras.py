@@ -118,6 +118,11 @@ class Found:
             shared.append(FittedTerm(self.device.friction.id, 1.0, {}))
         return composite_of(self.banded, self.variants, shared)
 
+    @property
+    def quiet(self) -> bool:
+        """True where all but noise may be explained: by the structures on their grid, or fitted."""
+        return self.banded.quiet or self.assessed.quiet
+
     @cached_property
     def assessed(self) -> Assessed:
         """The model, fitted."""
@@ -127,7 +132,7 @@ class Found:
 def found(device: Device) -> Found:
     """Return the most probable bands, with what the device has besides."""
     now = _searched(device, (), None)
-    if now.banded.quiet:
+    if now.quiet:
         return now
     best = now
     starts = {b.bands: b for b in (now.banded, now.fewer[0])}
@@ -143,9 +148,9 @@ def found(device: Device) -> Found:
             if more.value > best.value:
                 best = more
             way = more
-            if more.banded.quiet:
+            if more.quiet:
                 break
-        if best.banded.quiet:
+        if best.quiet:
             break
     return best
 

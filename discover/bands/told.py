@@ -24,7 +24,7 @@ def told(found: Found) -> Found:
     The likelihood of each is taken to the power of the share of the lines that say something of
     their own (a power posterior: Miller and Dunson, *J. Am. Stat. Assoc.* 114 (2019) 1113-1125).
     """
-    if found.banded.quiet:
+    if found.quiet:
         return found
     found = _without_idle(found)
     banded = found.banded

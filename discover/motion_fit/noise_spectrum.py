@@ -61,8 +61,7 @@ def noise_spectrum(time: Array, force: Array, frequency: float, step: float) -> 
     if found is None:
         found = _between_harmonics(time, force, frequency, step)
     level = smooth_spectrum(found.frequencies, found.density, found.width, 0.5 / step)
-    rising = _with_rise(level.frequencies, level.density, 0.1 * found.width)
-    return NoiseSpectrum(*rising, level.power)
+    return with_rise(level, 0.1 * found.width)
 
 
 def smooth_spectrum(
@@ -134,15 +133,18 @@ def _level(density: Array) -> float:
     return float(np.mean(others)) if others.size else middle
 
 
-def _with_rise(frequencies: Array, level: Array, lowest: float) -> tuple[Array, Array]:
-    """Return a density continued to `lowest` along the slope of its lower part.
+def with_rise(noise: NoiseSpectrum, lowest: float) -> NoiseSpectrum:
+    """Return a density continued to `lowest` (Hz) along the slope of its lower part.
 
-    Below a test's frequency hardly a line is clear, and that is where drifting noise is strongest.
+    Hardly a line tells there, and that is where drifting noise is strongest.
     """
-    few = min(_SLOPE_FROM, frequencies.size)
+    few = min(_SLOPE_FROM, noise.frequencies.size)
     if few < 3:
-        return frequencies, level
+        return noise
+    frequencies, level = noise.frequencies, noise.density
     known = np.maximum(level[:few], _LEAST)  # a record without noise has none here either
     slope = np.polyfit(np.log(frequencies[:few]), np.log(known), 1)[0]
     rise = (lowest / frequencies[0]) ** float(np.clip(slope, -_STEEPEST, 0.0))
-    return np.append(lowest, frequencies), np.append(level[0] * rise, level)
+    return NoiseSpectrum(
+        np.append(lowest, frequencies), np.append(level[0] * rise, level), noise.power
+    )

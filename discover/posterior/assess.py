@@ -108,23 +108,30 @@ class Assessor:
         """Evaluator of what may join a model, where a quarter of a cycle's points is enough."""
         return Evaluator(self.space.sheet, self.space.scales, coarse=True)
 
-    def assess(
-        self, model: Composite, start: Place, *, refit: bool = True, iterations: int = 12,
-        coarse: bool = False,
-    ) -> Assessed:
-        """Return a model fitted and assessed, from sizes to start from.
+    def glance(
+        self, model: Composite, place: Place, *, iterations: int
+    ) -> tuple[Composite, float]:
+        """Return a model after a few steps of a fit, and its log evidence at these sizes, nats.
 
-        In a hurry with a quarter of a cycle's points (`coarse`), or few `iterations`.
+        In a hurry, with a quarter of a cycle's points.
         """
-        evaluator = self.coarse if coarse else self.evaluator
+        space, curve = self.behind(model), self.curve_of(model)
+        sizes = place.sizes(space.own_unit)
+        local = fitted(space, self.coarse, model, sizes, curve, iterations=iterations)
+        value = judged(local, local.beside(space, curve), sizes).value
+        if space is not self.space:
+            space.forget()
+        return local.model, value
+
+    def assess(self, model: Composite, start: Place, *, refit: bool = True) -> Assessed:
+        """Return a model fitted and assessed, from sizes to start from."""
         place, space = start, self.space
         for _ in range(_ROUNDS):
             sizes = place.sizes(space.own_unit)
             numbers = None if refit else ()
             space = self.behind(model)
             local = fitted(
-                space, evaluator, model, sizes, self.curve_of(model),
-                numbers=numbers, iterations=iterations,
+                space, self.evaluator, model, sizes, self.curve_of(model), numbers=numbers
             )
             visited: dict[Place, float] = {}
             beside = local.beside(space, self.curve_of(model))

@@ -24,7 +24,7 @@ from models.terms import TERMS
 
 _NAMES = 5  # that are fitted, of those that gain most
 _SHAPES = 3  # of each, from which a fit starts, the best of each discrete choice first
-_FEW_STEPS, _STEPS = 3, 12  # of a fit: from several shapes, and from one
+_FEW_STEPS = 3  # of a fit from each of several shapes, of which the best goes on
 _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already
@@ -168,9 +168,7 @@ def _tried(
 
 def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:
     """Return a term beside the model, fitted from its best shapes."""
-    impacts = starts[0].trial.terms[0].term.impacts is not None
-    evaluator = assessor.coarse if impacts else assessor.evaluator
-    begun = []
+    evaluator = assessor.coarse
     start = now.place.towards(assessor.space.quiet)
     chosen = [
         (gain, model) for gain in _starting(starts)
@@ -178,13 +176,11 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
     ]
     if not chosen:  # at the size at which it would gain most it has no finite force
         return Candidate(starts[0].trial.id, now.value, None)
-    for gain, model in chosen:
-        steps = _FEW_STEPS if len(chosen) > 1 else _STEPS
-        one = assessor.assess(model, start, iterations=steps, coarse=impacts)
-        begun.append((one, gain))
-    begun.sort(key=lambda b: -(b[0].value + b[1].trial.log_prior))
-    first, gain = begun[0]
-    first = assessor.assess(first.model, first.place)
+    gain, model = chosen[0]
+    if len(chosen) > 1:
+        begun = [(*assessor.glance(m, start, iterations=_FEW_STEPS), g) for g, m in chosen]
+        model, _, gain = max(begun, key=lambda b: b[1] + b[2].trial.log_prior)
+    first = assessor.assess(model, start)
     return Candidate(
         gain.trial.id, first.value + gain.trial.log_prior, first, len(gain.trial.terms)
     )

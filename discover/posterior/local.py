@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import lsq_linear
-from scipy.special import logsumexp
 
 from discover.posterior.covariance import Sizes
 from discover.posterior.evidence import Solved, root_of, solved
@@ -120,7 +119,7 @@ def judged(local: Local, beside: Comparison, sizes: Sizes) -> Judged:
     normal = at.log_normal - 0.5 * at.gram[:, -1, -1]
     found = solved(gram, side, local.spread, local.sign, normal)
     k = int(np.argmax(found.log_evidence))
-    value = float(logsumexp(found.log_evidence)) - float(np.log(at.scales.size))
+    value = float(np.logaddexp.reduce(found.log_evidence)) - float(np.log(at.scales.size))
     one = Solved(found.log_evidence[k], found.mean[k], found.covariance[k])
     return Judged(value, float(at.scales[k]), one, gram[k], side[k])
 
@@ -220,4 +219,4 @@ def _fit(space: Space, force: Array, sizes: Sizes, curve: Part | None) -> float:
     if not np.all(np.isfinite(left)):
         return -np.inf
     at = Comparison(space, left, curve).at(sizes)
-    return float(logsumexp(at.log_normal - 0.5 * at.gram[:, 0, 0]))
+    return float(np.logaddexp.reduce(at.log_normal - 0.5 * at.gram[:, 0, 0]))

@@ -70,6 +70,7 @@ class Space:
     """Gives the rows (K, R_r) of terms in a record."""
     _products: dict[tuple[float, ...], Products] = field(default_factory=dict)
     _given: dict[Sizes, Given] = field(default_factory=dict)
+    _held: int = 0
 
     @property
     def start(self) -> Place:
@@ -100,16 +101,16 @@ class Space:
                 products = Products(self.sheet, self.own, whole, sizes.loud)
                 self._products[sizes.loud] = products
             known = given(products, sizes)
-            self._make_room(known.left.nbytes + known.taken.nbytes)
+            self._make_room(_bytes(known))
         self._given[sizes] = known
         return known
 
     def _make_room(self, new: int) -> None:
         """Let go of products at sizes asked for longest ago, where all take too many bytes."""
-        held = new + sum(g.left.nbytes + g.taken.nbytes for g in self._given.values())
-        while self._given and held > _MOST_HELD:
+        self._held += new
+        while self._given and self._held > _MOST_HELD:
             oldest = self._given.pop(next(iter(self._given)))
-            held -= oldest.left.nbytes + oldest.taken.nbytes
+            self._held -= _bytes(oldest)
             if all(g.products is not oldest.products for g in self._given.values()):
                 self._products.pop(oldest.products.loud, None)
 
@@ -117,10 +118,15 @@ class Space:
         """Let go of products, which are many: they are made again where they are asked for."""
         self._products.clear()
         self._given.clear()
+        self._held = 0
 
     def scale(self, places: Indices) -> Array:
         """Return the coefficients at which columns make the whole force."""
         return self.sheet.scale(self.columns[:, places])
+
+
+def _bytes(given: Given) -> int:
+    return int(given.left.nbytes + given.taken.nbytes)
 
 
 def unit(term: Term, shape: Shape) -> FittedTerm:

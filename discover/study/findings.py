@@ -67,7 +67,7 @@ def study_findings(
                 " are given by frequency.",
             )
         )
-    if not found.banded.quiet:  # no law for all explains all
+    if not found.quiet:  # no law for all explains all
         held = [record_rows(o) for o in prepared.observations if o.held_out]
         result += [d.finding for d in differing_records([*prepared.rows, *held])]
     observed = observation_findings(prepared.observations)

@@ -1,6 +1,6 @@
 """What a channel's low-pass makes of a force: Butterworth's of some order, by its delay."""
 
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,11 +41,7 @@ def low_passed(
         return low_passed_cycle(force, motion.step, delay, order)
     if digital:
         return low_passed_samples(force, motion.step, delay, order)
-    from scipy.signal import cont2discrete  # loaded here: it takes a quarter of a second
-
-    system = np.array([1.0]), _denominator(delay, order)
-    top, bottom, _ = cont2discrete(system, motion.step, method="foh")  # lines between samples
-    return _settled(force, top.ravel(), bottom)
+    return _settled(force, *_between_samples(delay / motion.step, order))
 
 
 def low_passed_samples(force: Array, step: float, delay: float, order: int = 1) -> Array:
@@ -57,6 +53,17 @@ def low_passed_samples(force: Array, step: float, delay: float, order: int = 1) 
     powers = _BILINEAR[order]  # of s = 2/step (z - 1)/(z + 1)
     bottom = (_denominator(delay, order) * rates) @ powers
     return _settled(force, powers[-1] / bottom[0], bottom / bottom[0])
+
+
+# Kept: a few numbers for each of the latest filters, which is the same for records of one rate.
+@lru_cache(maxsize=256)
+def _between_samples(delay: float, order: int) -> tuple[Array, Array]:
+    """Return the filter of samples with straight lines between them; the delay is in steps."""
+    from scipy.signal import cont2discrete  # loaded here: it takes a quarter of a second
+
+    system = np.array([1.0]), _denominator(delay, order)
+    top, bottom, _ = cont2discrete(system, 1.0, method="foh")
+    return top.ravel(), bottom
 
 
 def _settled(force: Array, top: Array, bottom: Array) -> Array:
