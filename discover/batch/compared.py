@@ -27,12 +27,13 @@ class Compared:
     """In words."""
     unit: str
     """SI."""
-    logarithmic: bool
-    """True where values lie over decades: their logarithms are compared."""
     bounds: tuple[float, float]
     """What every value lies between."""
     values: tuple[Mapping[str, Any], ...]
     """``campaign``, ``band``, ``value``, ``lower`` and ``upper`` (95 %) of each."""
+    between_tests: bool = False
+    """Whether all that is known is the tests between which a value lies, as of a boundary; such
+    values lie over decades, so their logarithms are compared."""
 
     @property
     def campaigns(self) -> frozenset[str]:
@@ -73,12 +74,12 @@ def _numbers(row: Row) -> Iterator[Compared]:
         if value is not None:
             ends = next((p.lower, p.upper) for p in term.parameters if p.name == shape)
             told = ({**where, **value},)
-            yield Compared("shape", place, f"{shape} of {name}", "", False, ends, told)
+            yield Compared("shape", place, f"{shape} of {name}", "", ends, told)
     value = _value(row, "coefficient", "lower95", "upper95")
     if value is not None:
         ends = (0.0 if term.nonnegative else -math.inf, math.inf)
         told = ({**where, **value},)
-        yield Compared("coefficient", place, name, row["unit"], False, ends, told)
+        yield Compared("coefficient", place, name, row["unit"], ends, told)
 
 
 def _value(row: Row, name: str, low: str, high: str) -> dict[str, float] | None:
@@ -102,6 +103,9 @@ def _boundaries(rows: Sequence[Row]) -> list[Compared]:
             {"campaign": row["campaign"], "band": 1, **value}
         )
     return [
-        Compared("boundary", "", name, _BOUNDARY.get(name, ""), True, (0.0, math.inf), tuple(told))
+        Compared(
+            "boundary", "", name, _BOUNDARY.get(name, ""), (0.0, math.inf), tuple(told),
+            between_tests=True,
+        )
         for name, told in sorted(found.items())
     ]

@@ -33,13 +33,13 @@ def fleet_quantities(rows: Sequence[Row]) -> list[dict[str, Any]]:
 def _quantity(number: Compared) -> dict[str, Any]:
     values = number.values
     table = np.array([[v["value"], v["lower"], v["upper"]] for v in values])
-    table = np.log(table) if number.logarithmic else table
+    table = np.log(table) if number.between_tests else table
     errors = standard_errors(table[:, 1], table[:, 2])
     apart = far_from_rest(table[:, 0], errors)
     rest = np.setdiff1d(np.arange(len(values)), [i for i, _ in apart])
     common = pooled(table[rest, 0], errors[rest])
     ends = np.array([common.mean, *common.interval])
-    mean, low, high = (float(e) for e in (np.exp(ends) if number.logarithmic else ends))
+    mean, low, high = (float(e) for e in (np.exp(ends) if number.between_tests else ends))
     return {
         "kind": number.kind,
         "name": number.name,
@@ -47,7 +47,7 @@ def _quantity(number: Compared) -> dict[str, Any]:
         "unit": number.unit,
         "mean": mean,
         "interval": [low, high],
-        "spread": common.spread * (mean if number.logarithmic else 1.0),
+        "spread": common.spread * (mean if number.between_tests else 1.0),
         "values": [dict(v) for v in values],
         "outliers": [
             {"campaign": values[i]["campaign"], "band": values[i]["band"],
