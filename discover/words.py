@@ -301,7 +301,8 @@ def quantity_name(quantity: Mapping[str, Any]) -> str:
     if quantity["kind"] == "boundary":
         known = {"dean": "Dean number", "speed": "speed amplitude"}
         return f"boundary, {known.get(quantity['name'], quantity['name'])}"
-    return f"{quantity['name']} in {quantity['structure']}"
+    place = f" in {quantity['structure']}" if quantity["structure"] else ""
+    return f"{quantity['name']}{place}"
 
 
 def coordinate_name(document: Mapping[str, Any]) -> str:

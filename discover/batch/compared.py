@@ -32,8 +32,8 @@ class Compared:
     values: tuple[Mapping[str, Any], ...]
     """``campaign``, ``band``, ``value``, ``lower`` and ``upper`` (95 %) of each."""
     between_tests: bool = False
-    """Whether all that is known is the tests between which a value lies, as of a boundary; such
-    values lie over decades, so their logarithms are compared."""
+    """Whether all that is known is the tests between which a value lies, as of a boundary, or the
+    steps of a scale; such values lie over decades, so their logarithms are compared."""
 
     @property
     def campaigns(self) -> frozenset[str]:

@@ -1,13 +1,12 @@
 """A fleet's prior: devices of one type tell each other's shapes, and what that changed.
 
 Works on what the studies state: numbers by their intervals, ways (structures, what friction turns
-over) by their probabilities. Nothing is studied again. What is known only to lie between two tests,
-as a boundary, is left alone: tests of one plan leave all devices the same room, which more devices
-make no narrower.
+over) by their probabilities. Nothing is studied again.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy as np
 
 from discover.batch.answer import Answer
 from discover.batch.compared import Compared, Row, compared
+from discover.batch.even_pooling import evenly_pooled
 from discover.batch.partial_pooling import Told, partly_pooled
 from discover.batch.pooling import farther_errors
 from discover.batch.shared_choice import shared_choice
@@ -37,7 +37,8 @@ def fleet_prior(answers: Sequence[Answer], rows: Sequence[Row], *, seed: int) ->
         Of the draws.
     """
     studied = {a.label: a.study for a in answers if a.study is not None}
-    numbers = [n for n in compared(rows) if len(n.campaigns) > 1 and not n.between_tests]
+    found = [*compared(rows), *_friction_sizes(studied)]
+    numbers = [n for n in found if len(n.campaigns) > 1]
     generator = np.random.default_rng(seed)
     return {
         "quantities": [_number(n) for n in numbers],
@@ -52,27 +53,52 @@ def fleet_prior(answers: Sequence[Answer], rows: Sequence[Row], *, seed: int) ->
 def _number(number: Compared) -> dict[str, Any]:
     """Return a number of several devices, alone and pooled."""
     table = np.array([[v["value"], v["lower"], v["upper"]] for v in number.values])
-    errors = farther_errors(table[:, 0], table[:, 1], table[:, 2])
-    found = partly_pooled(table[:, 0], errors, [v["campaign"] for v in number.values])
+    devices = [v["campaign"] for v in number.values]
+    if number.between_tests:
+        found = evenly_pooled(np.log(table[:, 1]), np.log(table[:, 2]), devices)
+    else:
+        found = partly_pooled(
+            table[:, 0], farther_errors(table[:, 0], table[:, 1], table[:, 2]), devices
+        )
     return {
         "kind": number.kind,
         "name": number.name,
         "structure": number.structure,
         "unit": number.unit,
+        "logarithmic": number.between_tests,
         "spread": found.spread.value,
         "spread_interval": list(found.spread.interval),
         "values": [
             {"campaign": v["campaign"], "band": v["band"],
              "alone": {k: v[k] for k in ("value", "lower", "upper")},
-             "pooled": _stated(told, number.bounds)}
+             "pooled": _stated(told, number)}
             for v, told in zip(number.values, found.values, strict=True)
         ],
     }  # fmt: skip
 
 
-def _stated(told: Told, bounds: tuple[float, float]) -> dict[str, float]:
-    ends = np.clip([told.value, *told.interval], *bounds)
+def _stated(told: Told, number: Compared) -> dict[str, float]:
+    ends = np.array([told.value, *told.interval])
+    ends = np.exp(ends) if number.between_tests else np.clip(ends, *number.bounds)
     return dict(zip(("value", "lower", "upper"), ends.tolist(), strict=True))
+
+
+def _friction_sizes(studied: Mapping[str, Mapping[str, Any]]) -> list[Compared]:
+    """Return the displacement or the speed that friction turns over, one value a device."""
+    found = []
+    for key, name in _TURNS_OVER.items():
+        values = []
+        for label, study in studied.items():
+            friction = _friction(study) or {}
+            if key in friction:
+                low, high = friction[f"{key}_interval"]
+                told = {"value": friction[key], "lower": low, "upper": high}
+                values.append({"campaign": label, "band": None, **told})
+        unit = "m" if name == "displacement" else "m/s"
+        ends = (0.0, math.inf)
+        name = f"{name} that friction turns over"
+        found.append(Compared("shape", "", name, unit, ends, tuple(values), between_tests=True))
+    return found
 
 
 def _friction(study: Mapping[str, Any]) -> Mapping[str, Any] | None:

@@ -22,7 +22,8 @@ _POINTS = 400  # of the spread's grid, even in its logarithm
 _LEAST = 1e-2  # of the surest value's error, where the grid begins: nothing differs less
 _MOST = 1e2  # of the values' range and errors, where the grid ends
 _FAR = 9.0  # standard deviations, beyond which a normal has nothing
-_ENDS = (0.025, 0.975)  # of an interval of 95 %
+ENDS = (0.025, 0.975)
+"""Of the probability, at the ends of an interval of 95 %."""
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,11 @@ def partly_pooled(values: Array, errors: Array, devices: Sequence[str]) -> Partl
     ...     np.array([1.0, 1.02, 1.5, 0.99]), np.array([0.02, 0.02, 0.5, 0.02]), list("abcd")
     ... )
     >>> third = found.values[2]
-    >>> round(third.value, 2), third.interval[1] - third.interval[0] < 0.2
+    >>> round(third.value, 2), third.interval[1] - third.interval[0] < 0.4
     (1.01, True)
     """
     spread = _grid(values, errors)
-    prior = _log_prior(spread, errors)
+    prior = reference_prior(spread, errors)
     names = np.array(devices)
     told = []
     for i in range(values.size):
@@ -88,7 +89,7 @@ def partly_pooled(values: Array, errors: Array, devices: Sequence[str]) -> Partl
             _mixture(_shares(weight), both * (values[i] / own + mean / wide), np.sqrt(both))
         )
     whole, mean, wide = _evidence(values, errors, spread)
-    return PartlyPooled(tuple(told), _of_grid(_shares(whole + prior), spread))
+    return PartlyPooled(tuple(told), median_of(_shares(whole + prior), spread))
 
 
 def _grid(values: Array, errors: Array) -> Array:
@@ -97,8 +98,16 @@ def _grid(values: Array, errors: Array) -> Array:
     return np.geomspace(_LEAST * float(errors.min()), most, _POINTS)
 
 
-def _log_prior(spread: Array, errors: Array) -> Array:
-    """Return the log of the reference prior (T,), for a grid that is even in the logarithm."""
+def reference_prior(spread: Array, errors: Array) -> Array:
+    """Return the log of the reference prior (T,), for a grid that is even in the logarithm.
+
+    Parameters
+    ----------
+    spread : array
+        (T,) standard deviations between devices.
+    errors : array
+        (N,) of the devices' values, same unit.
+    """
     each = spread[:, None] / (errors**2 + spread[:, None] ** 2)
     return np.asarray(0.5 * np.log(np.sum(each**2, axis=1)) + np.log(spread))
 
@@ -129,12 +138,20 @@ def _mixture(share: Array, means: Array, deviations: Array) -> Told:
     def below(at: float, part: float) -> float:
         return float(share @ ndtr((at - means) / deviations)) - part
 
-    first, last = (float(brentq(below, low, high, args=(part,))) for part in _ENDS)
+    first, last = (float(brentq(below, low, high, args=(part,))) for part in ENDS)
     return Told(float(share @ means), (first, last))
 
 
-def _of_grid(share: Array, grid: Array) -> Told:
-    """Return the median and the interval of a distribution over a grid (T,)."""
+def median_of(share: Array, grid: Array) -> Told:
+    """Return the median and the interval of a distribution over a grid.
+
+    Parameters
+    ----------
+    share : array
+        (T,) probabilities.
+    grid : array
+        (T,) values above 0, rising.
+    """
     total = np.cumsum(share) - 0.5 * share
-    low, middle, high = np.exp(np.interp([_ENDS[0], 0.5, _ENDS[1]], total, np.log(grid)))
+    low, middle, high = np.exp(np.interp([ENDS[0], 0.5, ENDS[1]], total, np.log(grid)))
     return Told(float(middle), (float(low), float(high)))

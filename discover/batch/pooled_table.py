@@ -30,7 +30,8 @@ POOLED_COLUMNS: dict[str, Any] = {
     "agreement": _NUMBER,
 }
 """Names and kinds of the columns. All numbers are SI; of the kind "probability" `alone` and
-`pooled` are those of the way that `quantity` ends with, and `agreement` is that of its devices."""
+`pooled` are those of the way that `quantity` ends with, and `agreement` is that of its devices.
+The spread of a boundary, or of what friction turns over, is that of its natural logarithm."""
 
 
 def pooled_rows(pooling: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -51,7 +52,7 @@ def _numbers(pooling: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         for v in q["values"]:
             yield {
                 "campaign": v["campaign"], "band": v["band"], "kind": q["kind"],
-                "structure": q["structure"], "quantity": q["name"], "unit": q["unit"],
+                "structure": q["structure"] or None, "quantity": q["name"], "unit": q["unit"],
                 **_ends("alone", v["alone"]), **_ends("pooled", v["pooled"]),
                 "spread": q["spread"], "spread_lower95": low, "spread_upper95": high,
             }  # fmt: skip

@@ -8,7 +8,15 @@ from typing import Any
 import numpy as np
 
 from discover.plots.fleet import NAMED, ROW, THIN, short_label
-from discover.plots.style import ACCENT, BEFORE, MUTED, house_style, legend_above, new_figure
+from discover.plots.style import (
+    ACCENT,
+    BEFORE,
+    MUTED,
+    house_style,
+    legend_above,
+    new_figure,
+    plain_log_axis,
+)
 from discover.plots.svg import to_svg
 
 _APART = 0.2  # of a row, between alone and pooled
@@ -32,6 +40,8 @@ def alone_and_pooled(quantity: Mapping[str, Any], *, name: str, label: str) -> s
     with house_style():
         figure = new_figure(560, 120 + (ROW if named else THIN) * max(len(values), 3))
         axes = figure.add_subplot()
+        if quantity["logarithmic"]:
+            axes.set_xscale("log")
         for key, colour, marker, side in (
             ("alone", BEFORE, "o", -_APART), ("pooled", ACCENT, "s", _APART),
         ):  # fmt: skip
@@ -44,6 +54,8 @@ def alone_and_pooled(quantity: Mapping[str, Any], *, name: str, label: str) -> s
                 [t["value"] for t in told], rows + side, linestyle="none", marker=marker,
                 markersize=5 if named else 2.5, color=colour, label=key,
             )
+        if quantity["logarithmic"]:
+            plain_log_axis(axes, which="x")
         axes.set_ylim(len(values) - 0.4, -0.6)
         names = [short_label(v["campaign"]) for v in values] if named else []
         axes.set_yticks(rows[: len(names)], names)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -12,10 +13,12 @@ from discover.plots.fleet_pooled import alone_and_pooled
 from discover.words import (
     capitalize_first,
     counted,
+    interval,
     percent,
     probability,
     quantity_name,
     raised,
+    significant,
 )
 
 _MOST_PICTURES = 24
@@ -69,21 +72,26 @@ def _arrow(change: Mapping[str, Any]) -> str:
 def _widths(q: Mapping[str, Any]) -> Iterator[tuple[float, Mapping[str, Any]]]:
     """Yield how wide each value's pooled interval is over its own alone, with the value."""
     for v in q["values"]:
-        alone, pooled = v["alone"], v["pooled"]
-        yield (pooled["upper"] - pooled["lower"]) / (alone["upper"] - alone["lower"]), v
+        (low, high), (first, last) = (
+            [math.log(t[e]) if q["logarithmic"] else t[e] for e in ("lower", "upper")]
+            for t in (v["pooled"], v["alone"])
+        )
+        yield (high - low) / (last - first), v
 
 
-def _changes(pooling: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield the likeliest way of every device for which it reads otherwise than alone."""
+def _changes(pooling: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the likeliest ways that read otherwise than alone, what changed most first."""
+    found = []
     for choice in pooling["choices"]:
         for v in choice["values"]:
             now = max(v["ways"], key=lambda w: w["pooled"])
             before = max(v["ways"], key=lambda w: w["alone"])
             if now is before and probability(now["pooled"]) == probability(now["alone"]):
                 continue
-            yield {
-                "campaign": v["campaign"], "name": choice["name"], **now, "before": before["way"]
-            }  # fmt: skip
+            found.append(
+                {"campaign": v["campaign"], "name": choice["name"], **now, "before": before["way"]}
+            )
+    return sorted(found, key=lambda c: -round(abs(c["pooled"] - c["alone"]), 2))
 
 
 def pooling_shown(pooling: Mapping[str, Any]) -> dict[str, Any]:
@@ -105,13 +113,24 @@ def pooling_shown(pooling: Mapping[str, Any]) -> dict[str, Any]:
             {**q, "label": capitalize_first(quantity_name(q)),
              "median_width": 100.0 * statistics.median(w for w, _ in widths),
              "least_width": 100.0 * least, "narrowest": narrowest["campaign"],
-             "svg": _picture(q, number)}
+             **_spread(q), "svg": _picture(q, number)}
         )  # fmt: skip
     return {
         "quantities": quantities,
         "changes": [{**c, "name": capitalize_first(c["name"])} for c in _changes(pooling)],
         "choices": [{**c, "name": capitalize_first(c["name"])} for c in pooling["choices"]],
     }
+
+
+def _spread(q: Mapping[str, Any]) -> dict[str, Any]:
+    """Return how much devices differ: a standard deviation, or a factor where logarithms do."""
+    ends = [q["spread"], *q["spread_interval"]]
+    if not q["logarithmic"]:
+        return {"differ": significant(ends[0], 2), "differ_unit": q["unit"],
+                "differ_interval": interval(ends[1:], 2)}  # fmt: skip
+    factors = [math.exp(e) for e in ends]
+    return {"differ": f"× {significant(factors[0], 3)}", "differ_unit": "",
+            "differ_interval": interval(factors[1:], 3)}  # fmt: skip
 
 
 def _picture(q: Mapping[str, Any], number: int) -> Markup:
