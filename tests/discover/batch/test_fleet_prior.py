@@ -6,6 +6,7 @@ from discover.batch.document import batch_document
 from discover.batch.pooled_table import POOLED_COLUMNS, pooled_rows
 from discover.batch.table import table_rows
 from discover.report.batch import batch_lines, batch_report
+from discover.words import THIN_SPACE
 
 
 def study(order, error, *, sure=0.99, boundary=(90.0, 110.0), turns=1e-3):
@@ -118,7 +119,7 @@ def test_page_and_lines_tell_what_changed(studies):
     pictures = len(document["quantities"]) + len(document["pooling"]["quantities"])
     assert page.count("<svg") == pictures
     (line,) = [one for one in batch_lines(document) if one.startswith("Pooled probabilities")]
-    assert "thin, structure of band 1 of 2: FOIM 60 % to" in line
+    assert "thin, structure of band 1 of 2: FOIM 60 % to" in line.replace(THIN_SPACE, " ")
 
 
 def test_without_pooling_page_and_document_do_not_speak_of_it(studies):
