@@ -97,4 +97,4 @@ def _batch(study: Mapping[str, Any], gap: Mapping[str, Any]) -> Mapping[str, Any
         Answer("two", "lab/two", study),
         Answer("three", "lab/three", None, None, "no such file"),
     ]
-    return batch_document(answers, table_rows(answers), seed=0, model=None)
+    return batch_document(answers, table_rows(answers), seed=0, model=None, pool=True)

@@ -411,6 +411,41 @@ SAID = {
     "batch.quantities[].outliers[].band": "Number of the band, from 1.",
     "batch.quantities[].outliers[].value": "In `unit`.",
     "batch.quantities[].outliers[].deviations": "Robust standard deviations from the median.",
+    "batch.pooling": "What `--pooled` changed; absent without it.",
+    "batch.pooling.quantities": "Every number that two devices or more have.",
+    "batch.pooling.quantities[].kind": '"boundary", "shape" or "coefficient".',
+    "batch.pooling.quantities[].name": "In words.",
+    "batch.pooling.quantities[].structure": 'Of the bands compared; "" for a boundary or friction.',
+    "batch.pooling.quantities[].logarithmic": "Whether logarithms are pooled; `spread` is theirs.",
+    "batch.pooling.quantities[].spread": "Standard deviation between devices, the median of its"
+    " posterior.",
+    "batch.pooling.quantities[].spread_interval": "95 %.",
+    "batch.pooling.quantities[].values": "Of each device.",
+    "batch.pooling.quantities[].values[].campaign": "Name of the campaign.",
+    "batch.pooling.quantities[].values[].band": "Number of the band, from 1; null for what all"
+    " bands share.",
+    "batch.pooling.quantities[].values[].alone": "As the device's own study states it.",
+    "batch.pooling.quantities[].values[].alone.value": "In `unit`.",
+    "batch.pooling.quantities[].values[].alone.lower": "Lower end of its 95 % interval.",
+    "batch.pooling.quantities[].values[].alone.upper": "Upper end.",
+    "batch.pooling.quantities[].values[].pooled": "Beside what the other devices say.",
+    "batch.pooling.quantities[].values[].pooled.value": "Its mean, in `unit`.",
+    "batch.pooling.quantities[].values[].pooled.lower": "Lower end of its 95 % interval.",
+    "batch.pooling.quantities[].values[].pooled.upper": "Upper end.",
+    "batch.pooling.choices": "Structures of bands, and what friction turns over.",
+    "batch.pooling.choices[].name": "In words.",
+    "batch.pooling.choices[].agreement": "Probability that two devices have the same because they"
+    " are of one type.",
+    "batch.pooling.choices[].values": "Of each device.",
+    "batch.pooling.choices[].values[].campaign": "Name of the campaign.",
+    "batch.pooling.choices[].values[].band": "Number of the band, from 1; null for what all bands"
+    " share.",
+    "batch.pooling.choices[].values[].ways": "What the device's own study does not rule out.",
+    "batch.pooling.choices[].values[].ways[].way": "A structure, or \"displacement\" or"
+    " \"speed\".",
+    "batch.pooling.choices[].values[].ways[].alone": "Probability in the device's own study.",
+    "batch.pooling.choices[].values[].ways[].pooled": "Probability beside what the other devices"
+    " say.",
     "batch.outliers": "The same of all quantities, with the quantity's `kind`, `name`, `structure`"
     " and `unit`.",
 }

@@ -55,7 +55,7 @@ def written(tmp_path_factory):
         "simulation": ["simulate", "ioim-laminar", "foim", one],
         "comparison": ["compare", one, two],
         "init": ["init", str(home / "raw")],
-        "batch": ["batch", one, two, "--model", "ioim-laminar"],
+        "batch": ["batch", one, two, "--model", "ioim-laminar", "--pooled"],
         "design": ["design", "--no-verify", "--amplitude", "8 mm"],
         "reproduction": ["reproduce"],
     }

@@ -8,12 +8,18 @@ from typing import Any
 
 from discover.batch.answer import Answer
 from discover.batch.fleet import fleet_quantities, structure_counts
+from discover.batch.fleet_prior import fleet_prior
 from discover.header import document_header
 from discover.words import counted
 
 
 def batch_document(
-    answers: Sequence[Answer], rows: Sequence[Mapping[str, Any]], *, seed: int, model: str | None
+    answers: Sequence[Answer],
+    rows: Sequence[Mapping[str, Any]],
+    *,
+    seed: int,
+    model: str | None,
+    pool: bool = False,
 ) -> dict[str, Any]:
     """Return ``batch.json``.
 
@@ -27,6 +33,8 @@ def batch_document(
         Of all studies.
     model : str or None
         That gaps were searched with; None where none were.
+    pool : bool, optional
+        Whether devices tell each other's answers (`discover.batch.fleet_prior`).
     """
     quantities = fleet_quantities(rows)
     hashes = [a.study["campaign"]["hash"] for a in answers if a.study is not None]
@@ -44,6 +52,7 @@ def batch_document(
             for q in quantities
             for o in q["outliers"]
         ],
+        **({"pooling": fleet_prior(answers, rows, seed=seed)} if pool else {}),
     }  # fmt: skip
 
 

@@ -36,6 +36,20 @@ def standard_errors(lower: Array, upper: Array) -> Array:
     return np.asarray((upper - lower) / (2.0 * _END))
 
 
+def farther_errors(values: Array, lower: Array, upper: Array) -> Array:
+    """Return the standard errors (N,) of 95 % intervals by the end that is farther from the value.
+
+    An interval that a bound cuts off, as that of a coefficient near zero, is as wide as on its
+    other side.
+
+    Examples
+    --------
+    >>> farther_errors(np.array([0.5]), np.array([0.0]), np.array([2.46])).round(3)
+    array([1.])
+    """
+    return np.asarray(np.maximum(values - lower, upper - values) / _END)
+
+
 def pooled(values: Array, errors: Array) -> Pooled:
     """Return the mean of a fleet whose devices differ (DerSimonian and Laird 1986).
 

@@ -136,8 +136,25 @@ def _gap(gap: Mapping[str, Any] | None) -> dict[str, Any]:
 
 def table_files(rows: Sequence[Mapping[str, Any]]) -> dict[str, bytes]:
     """Return the table as ``table.parquet`` and ``table.csv``."""
-    table = pa.Table.from_pylist([dict(r) for r in rows], schema=pa.schema(list(COLUMNS.items())))
+    return files_of("table", rows, COLUMNS)
+
+
+def files_of(
+    name: str, rows: Sequence[Mapping[str, Any]], columns: Mapping[str, Any]
+) -> dict[str, bytes]:
+    """Return rows as ``NAME.parquet`` and ``NAME.csv``.
+
+    Parameters
+    ----------
+    name : str
+        Of the files.
+    rows : sequence of mapping
+        By the columns' names.
+    columns : mapping
+        Names and kinds of the columns.
+    """
+    table = pa.Table.from_pylist([dict(r) for r in rows], schema=pa.schema(list(columns.items())))
     columnar, text = io.BytesIO(), io.BytesIO()
     pyarrow.parquet.write_table(table, columnar)
     pyarrow.csv.write_csv(table, text)
-    return {"table.parquet": columnar.getvalue(), "table.csv": text.getvalue()}
+    return {f"{name}.parquet": columnar.getvalue(), f"{name}.csv": text.getvalue()}

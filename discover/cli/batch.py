@@ -27,28 +27,40 @@ MARK = ".inerter-batch"
 """In the folder of a batch: what lies there is its own."""
 
 
+Campaigns = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="CAMPAIGN…",
+        help="Folders with campaign.toml, files of records, or folders of such folders.",
+    ),
+]
+Out = Annotated[
+    Path, typer.Option("-o", "--out", help="Folder of all results; what is done there stays.")
+]
+Model = Annotated[
+    str | None,
+    typer.Option(
+        "--model",
+        metavar="M",
+        help="Search each campaign's gap to this model too, named as for `inerter gap`.",
+        show_default=False,
+    ),
+]
+Pooled = Annotated[
+    bool,
+    typer.Option(
+        "--pooled",
+        help="Weigh each device's answers with what the others say, and show what that changes.",
+    ),
+]
+
+
 def batch(
     context: typer.Context,
-    campaigns: Annotated[
-        list[Path],
-        typer.Argument(
-            metavar="CAMPAIGN…",
-            help="Folders with campaign.toml, files of records, or folders of such folders.",
-        ),
-    ],
-    out: Annotated[
-        Path,
-        typer.Option("-o", "--out", help="Folder of all results; what is done there stays."),
-    ],
-    model: Annotated[
-        str | None,
-        typer.Option(
-            "--model",
-            metavar="M",
-            help="Search each campaign's gap to this model too, named as for `inerter gap`.",
-            show_default=False,
-        ),
-    ] = None,
+    campaigns: Campaigns,
+    out: Out,
+    model: Model = None,
+    pooled: Pooled = False,
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
@@ -66,6 +78,7 @@ def batch(
     # Loaded here: --help and complaints about options need no numerics.
     from discover.batch.campaigns import listed_campaigns, stamp
     from discover.batch.document import batch_document
+    from discover.batch.pooled_table import POOLED_FILES, pooled_files, pooled_rows
     from discover.batch.table import table_files, table_rows
     from discover.cli.batch_work import Item, answer_of
     from discover.document import json_text
@@ -75,31 +88,38 @@ def batch(
     model, model_hash = _model(model)
     asked = {"seed": seed, "model": model, "model_hash": model_hash}
     listed = listed_campaigns(campaigns)
+    if pooled and len(listed) < 2:
+        raise InputError("campaigns", expected="two or more", found="one", where="--pooled")
     home = out.resolve()
-    items = [
-        Item(one.path, one.given, home / one.label, stamp(one, asked), model, seed)
-        for one in listed
-    ]
     labels = [one.label for one in listed]
+    items = [Item(c.path, c.given, home / c.label, stamp(c, asked), model, seed) for c in listed]
     with executor(jobs, cluster) as where:
         out.mkdir(parents=True, exist_ok=True)
         (out / MARK).touch()
         errors = _work_off(items, labels, where)
     answers = [answer_of(*each) for each in zip(items, labels, errors, strict=True)]
     rows = table_rows(answers)
-    document = batch_document(answers, rows, seed=seed, model=model)
+    document = batch_document(answers, rows, seed=seed, model=model, pool=pooled)
     invocation: Invocation = context.obj
     page = batch_report(document, rows, command=invocation.repeat(seed=seed))
     text = json_text(document)
-    _write(out, {**table_files(rows), "batch.json": text.encode(), "report.html": page.encode()})
+    files = {**table_files(rows), "batch.json": text.encode(), "report.html": page.encode()}
+    if pooled:
+        files |= pooled_files(pooled_rows(document["pooling"]))
+    _write(out, files, gone=[name for name in POOLED_FILES if name not in files])
     if as_json:
         typer.echo(text, nl=False)
     else:
-        for line in batch_lines(document):
-            typer.echo(line)
-        typer.echo(f"Table: {shown_path(home / 'table.csv')}")
-        typer.echo(f"Report: {shown_path(home / 'report.html')}")
+        tables = [name for name in ("table.csv", "pooled.csv") if name in files]
+        _tell(batch_lines(document), [home / name for name in (*tables, "report.html")])
     return FAILED if any(errors) else 0
+
+
+def _tell(lines: Sequence[str], files: Sequence[Path]) -> None:
+    """Print what was found, and where it is."""
+    names = {"table.csv": "Table", "pooled.csv": "Pooled table", "report.html": "Report"}
+    for line in (*lines, *(f"{names[f.name]}: {shown_path(f)}" for f in files)):
+        typer.echo(line)
 
 
 def _work_off(items: Sequence[Item], labels: Sequence[str], where: Executor) -> list[str]:
@@ -140,13 +160,15 @@ def _check_folder(out: Path) -> None:
         )
 
 
-def _write(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Write the files of the whole batch, each of them whole or not at all."""
+def _write(folder: Path, files: Mapping[str, bytes], *, gone: Sequence[str]) -> None:
+    """Write the files of the whole batch, each whole or not at all; remove those that are gone."""
     with tempfile.TemporaryDirectory(prefix=".part-", dir=folder) as part:
         for name, content in files.items():
             (Path(part) / name).write_bytes(content)
         for name in files:
             os.replace(Path(part) / name, folder / name)
+    for name in gone:
+        (folder / name).unlink(missing_ok=True)
 
 
 @contextlib.contextmanager

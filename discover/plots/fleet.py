@@ -18,8 +18,10 @@ from discover.plots.style import (
 )
 from discover.plots.svg import to_svg
 
-_NAMED = 40  # devices that still have room for their names
-_ROW, _THIN = 18.0, 5.0  # CSS pixels
+NAMED = 40
+"""Devices that still have room for their names."""
+ROW, THIN = 18.0, 5.0
+"""CSS pixels of a device's row, with its name and without."""
 _LONGEST_NAME = 26
 
 
@@ -36,11 +38,11 @@ def over_devices(quantity: Mapping[str, Any], *, name: str, label: str) -> str:
         Of the axis, with its unit.
     """
     values = sorted(quantity["values"], key=lambda v: v["value"])
-    named = len(values) <= _NAMED
+    named = len(values) <= NAMED
     rows = np.arange(len(values))
     apart = {(o["campaign"], o["band"]) for o in quantity["outliers"]}
     with house_style():
-        figure = new_figure(560, 96 + (_ROW if named else _THIN) * max(len(values), 3))
+        figure = new_figure(560, 96 + (ROW if named else THIN) * max(len(values), 3))
         axes = figure.add_subplot()
         axes.axvspan(*quantity["interval"], color=ACCENT, alpha=0.15, linewidth=0)
         axes.axvline(quantity["mean"], color=ACCENT, linewidth=1.2)
@@ -64,7 +66,7 @@ def over_devices(quantity: Mapping[str, Any], *, name: str, label: str) -> str:
         if quantity["kind"] == "boundary":
             plain_log_axis(axes, which="x")
         axes.set_ylim(len(values) - 0.4, -0.6)
-        names = [_short(v["campaign"]) for v in values] if named else []
+        names = [short_label(v["campaign"]) for v in values] if named else []
         axes.set_yticks(rows[: len(names)], names)
         axes.tick_params(axis="y", length=0, labelsize=10, labelcolor=MUTED)
         axes.grid(visible=False, axis="y")
@@ -73,5 +75,6 @@ def over_devices(quantity: Mapping[str, Any], *, name: str, label: str) -> str:
         return to_svg(figure, name=name, title=f"{label} of each device")
 
 
-def _short(name: str) -> str:
+def short_label(name: str) -> str:
+    """Return a campaign's name with no more letters than there is room for."""
     return name if len(name) <= _LONGEST_NAME else name[: _LONGEST_NAME - 1] + "…"

@@ -10,11 +10,13 @@ from markupsafe import Markup
 
 from discover.plots.fleet import over_devices
 from discover.report.environment import render
+from discover.report.pooling import pooling_lines, pooling_shown
 from discover.words import (
     capitalize_first,
     counted,
     listed,
     named_line,
+    quantity_name,
     raised,
     significant,
     spread,
@@ -55,23 +57,9 @@ def batch_lines(document: Mapping[str, Any]) -> list[str]:
     apart = sorted({o["campaign"] for o in document["outliers"]})
     if apart:
         lines.append(f"Apart from the rest: {counted(len(apart), 'device')}, {listed(apart)}.")
+    if "pooling" in document:
+        lines += pooling_lines(document["pooling"])
     return lines
-
-
-def quantity_name(quantity: Mapping[str, Any]) -> str:
-    """Return a fleet's quantity in words.
-
-    Examples
-    --------
-    >>> quantity_name({"kind": "boundary", "name": "dean", "structure": ""})
-    'boundary, Dean number'
-    >>> quantity_name({"kind": "shape", "name": "order of x", "structure": "FOIM"})
-    'order of x in FOIM'
-    """
-    if quantity["kind"] == "boundary":
-        known = {"dean": "Dean number", "speed": "speed amplitude"}
-        return f"boundary, {known.get(quantity['name'], quantity['name'])}"
-    return f"{quantity['name']} in {quantity['structure']}"
 
 
 def batch_report(
@@ -113,6 +101,7 @@ def batch_report(
         failed=[d for d in devices if "error" in d],
         quantities=quantities,
         outliers=[{**o, "label": quantity_name(o)} for o in document["outliers"]],
+        pooling=pooling_shown(document["pooling"]) if "pooling" in document else None,
     )
 
 
