@@ -31,7 +31,6 @@ _SCALES = np.geomspace(3e-3, 1.0, 6)
 _SLOW = 3  # polynomials of time that follow a drift
 _FEWEST_LINES = 12  # of the spectrum, from which noise can be told
 _LONG = 200_000  # samples, from which it matters how fast a length transforms
-_TOGETHER = 4  # neighbouring lines that share a group: the taper makes them alike
 _HALF_OCTAVE = float(np.sqrt(2.0))  # ratio of frequencies
 
 
@@ -50,9 +49,9 @@ def band_noise(
 ) -> BandNoise:
     """Return the force's noise, and up to which frequency the force follows the motion.
 
-    A law explains lines that it was not fitted to. So the force follows as far as what is found in
-    every other group of lines explains half of the others or more in the highest half of an octave:
-    beyond, the motion is mostly noise itself.
+    A law holds at every frequency. So the force follows as far as what is found below explains
+    half of it or more in the next half of an octave: beyond, the motion is mostly noise itself.
+    Where the most of the force is in that half, too little is below it to find a law from.
 
     Parameters
     ----------
@@ -116,13 +115,12 @@ def _follows(lines: Lines, target: Lines, frequencies: Array) -> float:
         below = int(end / _HALF_OCTAVE)
         if below < _FEWEST_LINES:
             return float(frequencies[end - 1])
-        place = np.arange(end)
-        seen = place // _TOGETHER % 2 == 0
-        coefficients, _, _ = _explained(lines[:, :end][:, seen], target[:end][seen],
-                                        frequencies[:end][seen])
-        other = np.flatnonzero(~seen & (place >= below))
-        left = target[other] - coefficients @ lines[:, other]
-        if np.sum(np.abs(left) ** 2) < 0.5 * np.sum(np.abs(target[other]) ** 2):
+        whole = np.abs(target[:end]) ** 2
+        if np.sum(whole[below:]) > np.sum(whole[:below]):
+            return float(frequencies[end - 1])
+        coefficients, _, _ = _explained(lines[:, :below], target[:below], frequencies[:below])
+        left = target[below:end] - coefficients @ lines[:, below:end]
+        if np.sum(np.abs(left) ** 2) < 0.5 * np.sum(whole[below:]):
             return float(frequencies[end - 1])
         end = below
 
