@@ -162,7 +162,7 @@ def _window(
     count = int(np.floor(cutoff * size * step)) + 1
     project = _projection(inside, taper, count)
     frequencies = np.arange(count, dtype=np.float64) / (size * step)
-    density = noise.at(np.maximum(frequencies, frequencies[1]))
+    density = noise.at(np.maximum(frequencies, 0.25 * frequencies[1]))  # line 0 is up to a half
     mean_power = float(np.mean(force**2))
     variance = np.maximum(density / (2.0 * size * step), RELATIVE_FLOOR**2 * mean_power)
     v_rms, x_rms = float(np.std(motion.velocity[inside])), float(np.std(x[inside]))

@@ -15,7 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.fft import prev_fast_len
 
-from discover.motion_fit.noise_spectrum import NoiseSpectrum, smooth_spectrum, with_rise
+from discover.motion_fit.noise_spectrum import (
+    NoiseSpectrum,
+    slope_of_lines,
+    smooth_spectrum,
+    with_rise,
+)
 from discover.motion_fit.observation import Lines
 from models.checks import Array
 from models.motion import Motion
@@ -89,9 +94,11 @@ def band_noise(
     for place in np.flatnonzero(coefficients):
         beyond -= coefficients[place] * each[place][count:]
     beyond = np.abs(beyond) ** 2
+    slope = slope_of_lines(frequencies[:count], left, kept)
     left = np.concatenate([left, np.minimum(beyond, np.abs(target[count:]) ** 2)])
     kept = np.concatenate([kept, np.ones(beyond.size)])
-    noise = with_rise(smooth_spectrum(frequencies, left, width, 0.5 / step, kept), 0.1 * width)
+    noise = smooth_spectrum(frequencies, left, width, 0.5 / step, kept)
+    noise = with_rise(noise, slope, 0.1 * width)
     return BandNoise(noise, _follows(lines, target[:count], frequencies[:count]))
 
 

@@ -61,7 +61,7 @@ def noise_spectrum(time: Array, force: Array, frequency: float, step: float) -> 
     if found is None:
         found = _between_harmonics(time, force, frequency, step)
     level = smooth_spectrum(found.frequencies, found.density, found.width, 0.5 / step)
-    return with_rise(level, 0.1 * found.width)
+    return with_rise(level, _slope_of_ranges(level), 0.1 * found.width)
 
 
 def smooth_spectrum(
@@ -133,18 +133,35 @@ def _level(density: Array) -> float:
     return float(np.mean(others)) if others.size else middle
 
 
-def with_rise(noise: NoiseSpectrum, lowest: float) -> NoiseSpectrum:
-    """Return a density continued to `lowest` (Hz) along the slope of its lower part.
+def with_rise(noise: NoiseSpectrum, slope: float, lowest: float) -> NoiseSpectrum:
+    """Return a density continued to `lowest` (Hz) with a power (`slope`) of the frequency.
 
     Hardly a line tells there, and that is where drifting noise is strongest.
     """
-    few = min(_SLOPE_FROM, noise.frequencies.size)
-    if few < 3:
-        return noise
     frequencies, level = noise.frequencies, noise.density
-    known = np.maximum(level[:few], _LEAST)  # a record without noise has none here either
-    slope = np.polyfit(np.log(frequencies[:few]), np.log(known), 1)[0]
     rise = (lowest / frequencies[0]) ** float(np.clip(slope, -_STEEPEST, 0.0))
     return NoiseSpectrum(
         np.append(lowest, frequencies), np.append(level[0] * rise, level), noise.power
     )
+
+
+def slope_of_lines(frequencies: Array, periodogram: Array, kept: Array) -> float:
+    """Return the power of the frequency with which noise goes, of which a fit has `kept` a share.
+
+    The mean of what lines (B,) of exponential scatter tell (Whittle's likelihood).
+    """
+    slopes = np.linspace(-_STEEPEST, _STEEPEST, 4 * round(_STEEPEST) * 2 + 1)
+    shape = frequencies ** slopes[:, None] * np.maximum(kept, _LEAST_LEFT)
+    level = np.mean(periodogram / shape, axis=1, keepdims=True)
+    value = -np.sum(np.log(np.maximum(level * shape, _LEAST)), axis=1)
+    weight = np.exp(value - value.max())
+    return float(weight @ slopes / weight.sum())
+
+
+def _slope_of_ranges(noise: NoiseSpectrum) -> float:
+    """Return the power of the frequency with which the lower part of a density goes."""
+    few = min(_SLOPE_FROM, noise.frequencies.size)
+    if few < 3:
+        return 0.0
+    known = np.maximum(noise.density[:few], _LEAST)  # a record without noise has none here either
+    return float(np.polyfit(np.log(noise.frequencies[:few]), np.log(known), 1)[0])
