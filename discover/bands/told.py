@@ -13,22 +13,27 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.bands.extras import Found
+from discover.bands.search import Banded
 from discover.posterior.assess import Assessed
 from discover.posterior.spread import idle
 from models.checks import Array
 
 
 def told(found: Found) -> Found:
-    """Return the answer; where more is left than noise its structures are told with less surety.
+    """Return the answer; where more is left than noise it is told with less surety.
 
-    The likelihood of each is taken to the power of the share of the lines that say something of
-    their own (a power posterior: Miller and Dunson, *J. Am. Stat. Assoc.* 114 (2019) 1113-1125).
+    The likelihood of each structure, and of each number of bands, is taken to the power of the
+    share of the lines that say something of their own (a power posterior: Miller and Dunson, *J.
+    Am. Stat. Assoc.* 114 (2019) 1113-1125).
     """
     if found.quiet:
         return found
+    power = _own_share(found.assessed.predicting)
+    if found.device.bands is None:
+        values = [_at_power(found, b, power) for b in found.fewer]
+        found = replace(found, banded=found.fewer[int(np.argmax(values))])
     found = _without_idle(found)
     banded = found.banded
-    power = _own_share(found.assessed.predicting)
     _, _, answer = found.search.one(
         banded.place, banded.shares, np.array(banded.variants), power=power
     )
@@ -39,6 +44,13 @@ def told(found: Found) -> Found:
         possible = np.where(np.isfinite(by_variant[:, own]), answer.by_variant[0][:, own], -np.inf)
         by_variant[:, own] += _total(possible) - _total(by_variant[:, own])
     return _with_values(found, by_variant)
+
+
+def _at_power(found: Found, banded: Banded, power: float) -> float:
+    """Return the log evidence, nats, of a number of bands, its likelihood taken to a power."""
+    start = np.array(banded.variants)
+    value, _, _ = found.search.one(banded.place, banded.shares, start, power=power)
+    return value + banded.value - banded.at_place
 
 
 def _total(values: Array) -> Array:
