@@ -257,15 +257,31 @@ def _without_superfluous(way: Found) -> Found:
     """Return the bands without what has joined and need not, among the bands found with it."""
     for joined in way.joined:
         now = way.assessed
-        own = [k for k, p in enumerate(now.model.terms) if p.fitted.id == joined.id]
-        less = now.model
-        for place in reversed(own):
-            less = less.without(place)
-        without = way.device.assessor.assess(less, now.place)
-        if not (is_told(now, own) and is_needed(without, now)):
-            others = [j for j in way.joined if j is not joined]
-            way = _searched(way.device, others, without.place, without)
+        own, less = _less(way, joined)
+        if not (is_told(now, own) and is_needed(less, now)):
+            way = _left_with(way, joined, less)
     return way
+
+
+def without(way: Found, joined: Joined) -> Found:
+    """Return the bands without something that has joined."""
+    _, less = _less(way, joined)
+    return replace(_left_with(way, joined, less), last=way.last)
+
+
+def _less(way: Found, joined: Joined) -> tuple[list[int], Assessed]:
+    """Return the places of terms that joined, and the model without them."""
+    now = way.assessed
+    own = [k for k, p in enumerate(now.model.terms) if p.fitted.id == joined.id]
+    less = now.model
+    for place in reversed(own):
+        less = less.without(place)
+    return own, way.device.assessor.assess(less, now.place)
+
+
+def _left_with(way: Found, joined: Joined, less: Assessed) -> Found:
+    others = [j for j in way.joined if j is not joined]
+    return _searched(way.device, others, less.place, less)
 
 
 def _that_predict(now: Assessed, step: Step) -> Step:

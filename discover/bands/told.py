@@ -49,7 +49,7 @@ def told(found: Found) -> Found:
 def _at_power(found: Found, banded: Banded, power: float) -> float:
     """Return the log evidence, nats, of a number of bands, its likelihood taken to a power."""
     start = np.array(banded.variants)
-    value, _, _ = found.search.one(banded.place, banded.shares, start, power=power)
+    value, _, _ = found.search.one(banded.place, banded.shares, start, others=False, power=power)
     return value + banded.value - banded.at_place
 
 

@@ -68,7 +68,8 @@ def with_few_curves(
     wide = Composite((*terms, *(replace(whole, fitted=t) for t in more)))
     given = (at, *range(len(terms), len(wide.terms)))
     sizes = predicting.place.sizes(space.own_unit)
-    best = fitted(space, assessor.evaluator, wide, sizes, None).model
+    free = [n for n in wide.numbers if n.shape is None or n.term not in given]
+    best = fitted(space, assessor.evaluator, wide, sizes, None, numbers=free).model
     parts = [best.terms[i].fitted for i in given]
     least = _NOTHING * sum(t.coefficient for t in parts)
     kept = tuple(t for t in parts if t.coefficient > least) or (parts[0],)

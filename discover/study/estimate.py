@@ -38,6 +38,13 @@ class Estimates:
         """Of each band."""
         return tuple(ForceModel(tuple(t.fitted for t in terms)) for terms in self.terms)
 
+    @property
+    def untold(self) -> frozenset[str]:
+        """Ids of terms none of which is told from zero."""
+        every = [t for terms in self.terms for t in terms]
+        told = {t.fitted.id for t in every if t.interval[0] > 0.0 or t.interval[1] < 0.0}
+        return frozenset(t.fitted.id for t in every) - told
+
 
 def estimated(prepared: Prepared, found: Found) -> Estimates:
     """Return what holds in each band, in numbers."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from discover.bands.boundaries import Boundary, boundaries_of, line_evidence
-from discover.bands.extras import Found, found
+from discover.bands.extras import Found, found, without
 from discover.bands.told import told
 from discover.dean import AmplitudeExponent, DeanCheck, amplitude_exponent, check_dean
 from discover.figure_data import StructureProbability, StudyFigureData
@@ -66,8 +66,22 @@ def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
     chosen = options or StudyOptions()
     with threadpool_limits(1):  # its matrices are small: more threads take longer
         prepared = prepare(campaign, chosen)
-        answer = told(found(prepared.device))
-        return _study(campaign, chosen, prepared, answer, estimated(prepared, answer))
+        return _study(campaign, chosen, prepared, *_answered(prepared))
+
+
+def _answered(prepared: Prepared) -> tuple[Found, Estimates]:
+    """Return the answer and its numbers, without what they do not tell from nothing.
+
+    Beside friction's whole curve a term may be told that is not beside the few that are stated.
+    """
+    answer = told(found(prepared.device))
+    while True:
+        estimates = estimated(prepared, answer)
+        ids = estimates.untold
+        doubtful = [j for j in answer.joined if j.id in ids]
+        if not doubtful:
+            return answer, estimates
+        answer = told(without(answer, doubtful[-1]))
 
 
 def _study(
