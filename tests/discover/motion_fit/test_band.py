@@ -132,3 +132,41 @@ def test_a_random_record_spans_the_frequencies_of_its_motion(band):
     low, high = observe(Record("random.csv", t, force, x)).span
     assert low == pytest.approx(band[0], rel=0.5)
     assert high == pytest.approx(band[1], rel=0.05)
+
+
+def pink(size, rng):
+    """Return noise of unit rms whose density falls with the frequency, white above 10 Hz."""
+    frequencies = np.fft.rfftfreq(size, STEP)
+    lines = np.fft.rfft(rng.standard_normal(size))
+    whole = np.fft.irfft(lines * np.sqrt(1.0 + 10.0 / np.maximum(frequencies, 0.02)), size)
+    return whole / np.std(whole)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_narrow_band_is_kept(seed):
+    """Below it the force is noise, from which no law is found that could hold in it."""
+    rng = np.random.default_rng(seed)
+    time = STEP * np.arange(4000)
+    x, v, a = multisine(time, low=7.0, high=9.0, count=40, seed=seed)
+    force = 2.0 * a + 8.0 * v + 3.0 * np.sign(v)
+    noisy = force + 0.05 * np.std(force) * pink(time.size, rng)
+    record = Record("r.csv", time, noisy, x + 1e-6 * rng.standard_normal(time.size))
+    assert observe_band(record, slice(None), "random").cutoff > 8.0
+
+
+def test_noise_that_rises_to_low_frequencies_is_seen_in_the_lowest_lines():
+    """Their variance is that of their noise within a factor of two, in the mean of eight records.
+
+    One that is the same in all lines of the band is a fifth of it.
+    """
+    ratios = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        time = STEP * np.arange(8000)
+        x, v, a = multisine(time, low=0.3, high=4.0, count=80, seed=seed)
+        force = 80.0 * a + 400.0 * v
+        error = 0.02 * np.std(force) * pink(time.size, rng)
+        record = Record("r.csv", time, force + error, x + 1e-7 * rng.standard_normal(x.size))
+        for window in observe_band(record, slice(None), "random").windows:
+            ratios.append(np.abs(window.project(error)[1:6]) ** 2 / (2.0 * window.variance[1:6]))
+    assert 0.5 < np.mean(ratios) < 2.0
