@@ -67,8 +67,8 @@ def with_few_curves(
     terms = [replace(p, fitted=first) if i == at else p for i, p in enumerate(model.terms)]
     wide = Composite((*terms, *(replace(whole, fitted=t) for t in more)))
     given = (at, *range(len(terms), len(wide.terms)))
-    sizes = predicting.place.sizes(space.own_unit)
     free = [n for n in wide.numbers if n.shape is None or n.term not in given]
+    sizes = predicting.place.sizes(space.own_unit)
     best = fitted(space, assessor.evaluator, wide, sizes, None, numbers=free).model
     parts = [best.terms[i].fitted for i in given]
     least = _NOTHING * sum(t.coefficient for t in parts)
