@@ -288,23 +288,6 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
-def quantity_name(quantity: Mapping[str, Any]) -> str:
-    """Return a fleet's quantity in words.
-
-    Examples
-    --------
-    >>> quantity_name({"kind": "boundary", "name": "dean", "structure": ""})
-    'boundary, Dean number'
-    >>> quantity_name({"kind": "shape", "name": "order of x", "structure": "FOIM"})
-    'order of x in FOIM'
-    """
-    if quantity["kind"] == "boundary":
-        known = {"dean": "Dean number", "speed": "speed amplitude"}
-        return f"boundary, {known.get(quantity['name'], quantity['name'])}"
-    place = f" in {quantity['structure']}" if quantity["structure"] else ""
-    return f"{quantity['name']}{place}"
-
-
 def coordinate_name(document: Mapping[str, Any]) -> str:
     """Return the coordinate that bands lie on, a Dean number with its convention.
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from discover.plots.style import (
     ACCENT,
@@ -65,16 +66,21 @@ def over_devices(quantity: Mapping[str, Any], *, name: str, label: str) -> str:
             )
         if quantity["kind"] == "boundary":
             plain_log_axis(axes, which="x")
-        axes.set_ylim(len(values) - 0.4, -0.6)
-        names = [short_label(v["campaign"]) for v in values] if named else []
-        axes.set_yticks(rows[: len(names)], names)
-        axes.tick_params(axis="y", length=0, labelsize=10, labelcolor=MUTED)
-        axes.grid(visible=False, axis="y")
-        axes.spines["left"].set_visible(False)
-        axes.set_xlabel(label)
+        a_row_a_device(axes, [v["campaign"] for v in values], label)
         return to_svg(figure, name=name, title=f"{label} of each device")
 
 
 def short_label(name: str) -> str:
     """Return a campaign's name with no more letters than there is room for."""
     return name if len(name) <= _LONGEST_NAME else name[: _LONGEST_NAME - 1] + "…"
+
+
+def a_row_a_device(axes: Axes, campaigns: Sequence[str], label: str) -> None:
+    """Give each device its row, the first one on top, with its name where there is room."""
+    names = [short_label(c) for c in campaigns] if len(campaigns) <= NAMED else []
+    axes.set_ylim(len(campaigns) - 0.4, -0.6)
+    axes.set_yticks(range(len(names)), names)
+    axes.tick_params(axis="y", length=0, labelsize=10, labelcolor=MUTED)
+    axes.grid(visible=False, axis="y")
+    axes.spines["left"].set_visible(False)
+    axes.set_xlabel(label)

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from discover.plots.fleet import NAMED, ROW, THIN, short_label
+from discover.plots.fleet import NAMED, ROW, THIN, a_row_a_device
 from discover.plots.style import (
     ACCENT,
     BEFORE,
-    MUTED,
     house_style,
     legend_above,
     new_figure,
@@ -56,12 +55,6 @@ def alone_and_pooled(quantity: Mapping[str, Any], *, name: str, label: str) -> s
             )
         if quantity["logarithmic"]:
             plain_log_axis(axes, which="x")
-        axes.set_ylim(len(values) - 0.4, -0.6)
-        names = [short_label(v["campaign"]) for v in values] if named else []
-        axes.set_yticks(rows[: len(names)], names)
-        axes.tick_params(axis="y", length=0, labelsize=10, labelcolor=MUTED)
-        axes.grid(visible=False, axis="y")
-        axes.spines["left"].set_visible(False)
-        axes.set_xlabel(label)
+        a_row_a_device(axes, [v["campaign"] for v in values], label)
         legend_above(figure, ncols=2)
         return to_svg(figure, name=name, title=f"{label} of each device, alone and pooled")

@@ -6,23 +6,18 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
-from markupsafe import Markup
-
 from discover.plots.fleet import over_devices
 from discover.report.environment import render
+from discover.report.fleet_quantity import pictured, quantity_name
 from discover.report.pooling import pooling_lines, pooling_shown
 from discover.words import (
     capitalize_first,
     counted,
     listed,
     named_line,
-    quantity_name,
-    raised,
     significant,
     spread,
 )
-
-_MOST_PICTURES = 24
 
 
 def batch_lines(document: Mapping[str, Any]) -> list[str]:
@@ -88,7 +83,7 @@ def batch_report(
         for own in [bands.get(c["campaign"], {})]
     ]  # fmt: skip
     quantities = [
-        {**q, "label": capitalize_first(quantity_name(q)), "svg": _picture(q, number)}
+        pictured(q, number, over_devices, "fleet")
         for number, q in enumerate(document["quantities"])
     ]
     return render(
@@ -103,11 +98,3 @@ def batch_report(
         outliers=[{**o, "label": quantity_name(o)} for o in document["outliers"]],
         pooling=pooling_shown(document["pooling"]) if "pooling" in document else None,
     )
-
-
-def _picture(quantity: Mapping[str, Any], number: int) -> Markup:
-    if number >= _MOST_PICTURES:
-        return Markup("")
-    unit = f" ({raised(quantity['unit'])})" if quantity["unit"] not in ("", "1") else ""
-    label = capitalize_first(quantity_name(quantity)) + unit
-    return Markup(over_devices(quantity, name=f"fleet-{number}", label=label))

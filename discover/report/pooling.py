@@ -7,21 +7,17 @@ import statistics
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from markupsafe import Markup
-
 from discover.plots.fleet_pooled import alone_and_pooled
+from discover.report.fleet_quantity import pictured, quantity_name
 from discover.words import (
     capitalize_first,
     counted,
     interval,
     percent,
     probability,
-    quantity_name,
-    raised,
     significant,
 )
 
-_MOST_PICTURES = 24
 _MOST_NAMED = 3  # changes of ways that a line holds
 
 
@@ -110,10 +106,10 @@ def pooling_shown(pooling: Mapping[str, Any]) -> dict[str, Any]:
         widths = list(_widths(q))
         least, narrowest = min(widths, key=lambda entry: entry[0])
         quantities.append(
-            {**q, "label": capitalize_first(quantity_name(q)),
+            {**pictured(q, number, alone_and_pooled, "pooled"),
              "median_width": 100.0 * statistics.median(w for w, _ in widths),
              "least_width": 100.0 * least, "narrowest": narrowest["campaign"],
-             **_spread(q), "svg": _picture(q, number)}
+             **_spread(q)}
         )  # fmt: skip
     return {
         "quantities": quantities,
@@ -131,13 +127,3 @@ def _spread(q: Mapping[str, Any]) -> dict[str, Any]:
     factors = [math.exp(e) for e in ends]
     return {"differ": f"× {significant(factors[0], 3)}", "differ_unit": "",
             "differ_interval": interval(factors[1:], 3)}  # fmt: skip
-
-
-def _picture(q: Mapping[str, Any], number: int) -> Markup:
-    if number >= _MOST_PICTURES:
-        return Markup("")
-    unit = f" ({raised(q['unit'])})" if q["unit"] not in ("", "1") else ""
-    label = capitalize_first(quantity_name(q)) + unit
-    return Markup(alone_and_pooled(q, name=f"pooled-{number}", label=label))
-
-

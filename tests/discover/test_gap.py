@@ -198,15 +198,23 @@ def mounted():
     return close_gap(campaign(law), BASE)
 
 
-@pytest.mark.xfail(strict=False, reason="of the two shapes a quick fit prefers play, by little")
-def test_a_spring_in_series_is_not_named_play_in_soft_flanks(mounted):
-    assert mounted.rounds[0].effect != "backlash"
+def test_the_gap_of_a_spring_in_series_closes_with_one_effect(mounted):
+    first = mounted.rounds[0]
+    assert "series-compliance" in {first.effect, *dict(first.alternatives)}
     assert mounted.final_gap_percent < 1.15 * mounted.noise_percent
 
 
 @pytest.mark.xfail(
     reason="beside a remainder the least error of records left out decides, however little less",
     strict=False,  # it depends on the processor's last digits whether more than noise is left
+)
+def test_a_spring_in_series_is_not_named_play_in_soft_flanks(mounted):
+    assert mounted.rounds[0].effect != "backlash"
+
+
+@pytest.mark.xfail(
+    reason="beside a remainder the least error of records left out decides, however little less",
+    strict=False,  # likewise
 )
 def test_a_spring_in_series_is_no_play_in_soft_flanks(mounted):
     first = mounted.rounds[0]

@@ -6,6 +6,7 @@ import pytest
 
 from discover.readers import read_campaign
 from discover.study import StudyOptions, run_study
+from discover.words import zero_possible
 
 FOLDER = Path(__file__).parents[3] / "shared" / "real-data"
 needs_data = pytest.mark.skipif(not FOLDER.is_dir(), reason="measured data not beside the checkout")
@@ -62,6 +63,8 @@ def test_emps_searched_freely_differs_by_direction_and_has_no_fractional_term(em
     assert (band.structure, band.family) == ("IOIM-linear", "integer")
     assert "fractional-derivative" not in found
     assert {"asymmetric-damping", "force-offset"} & set(found)
+    told = {e.term.fitted.id for e in band.extras if not zero_possible(e.term.interval)}
+    assert told == {e.term.fitted.id for e in band.extras}
 
 
 @pytest.mark.sweep
@@ -105,7 +108,13 @@ def test_silverbox_is_a_duffing_oscillator():
 
 
 STRANGE = (
-    "foot-single-cam", "fsae-damper-hard", "fsae-damper-soft",
+    pytest.param(
+        "foot-single-cam",
+        marks=pytest.mark.xfail(
+            strict=True, reason="what its cycles differ by, 22 % of the force, is taken for noise"
+        ),
+    ),
+    "fsae-damper-hard", "fsae-damper-soft",
     "inerter-cvt-steady", "mr-utfsm-0p5A", "seal-oring-1bar", "seal-xring",
 )  # fmt: skip
 
@@ -115,5 +124,5 @@ STRANGE = (
 @pytest.mark.parametrize("name", STRANGE)
 def test_machines_that_no_structure_holds_for_have_no_sure_fractional_one(name):
     study = run_study(read_campaign(FOLDER / name))
-    assert study.bands[0].remainder.interval[0] > 0.0  # more than noise is left
+    assert study.bands[0].remainder.percent > study.bands[0].noise_percent
     assert not any(b.structure == "FOIM" and b.probability >= 0.8 for b in study.bands)

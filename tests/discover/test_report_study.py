@@ -220,15 +220,10 @@ def test_a_band_without_a_term_is_named_in_words():
     assert headline(document).startswith("none of the structures in all ")
 
 
-def test_an_effect_whose_size_may_be_zero_is_not_stated_in_the_verdict():
+def test_the_size_of_an_effect_in_one_test_may_be_zero():
     document = copy.deepcopy(sample_document())
-    name = sample_document()["bands"][0]["extras"][0]["id"].replace("-", " ").split(",")[0]
-    assert name in headline(document)
+    assert "zero not ruled out" not in report(document)
     for band in document["bands"]:
         unsure = {"coefficient": 1.0, "interval": [-1.0, 3.0]}
         band["extras"] = [{**extra, **unsure} for extra in band["extras"]]
-    assert name not in headline(document)
-    (beside,) = (s for s in verdict_lines(document) if s.startswith("Beside it: "))
-    assert beside.startswith(f"Beside it: possibly {name} ")
-    assert "its size is not told from zero" in beside
     assert "zero not ruled out" in report(document)
