@@ -14,7 +14,7 @@ from scipy.special import logsumexp
 
 from discover.bands.extras import Found
 from discover.bands.search import Banded
-from discover.posterior.assess import Assessed
+from discover.posterior.own_share import own_share
 from discover.posterior.spread import idle
 from models.checks import Array
 
@@ -28,7 +28,7 @@ def told(found: Found) -> Found:
     """
     if found.quiet:
         return found
-    power = _own_share(found.assessed.predicting)
+    power = own_share(found.assessed.predicting)
     if found.device.bands is None:
         values = [_at_power(found, b, power) for b in found.fewer]
         found = replace(found, banded=found.fewer[int(np.argmax(values))])
@@ -57,25 +57,6 @@ def _total(values: Array) -> Array:
     """Return the logarithm (B, 1) of the sum of exponentials (B, V), 0 where all are none."""
     total = logsumexp(values, axis=1, keepdims=True)
     return np.where(np.isfinite(total), total, 0.0)
-
-
-def _own_share(assessed: Assessed) -> float:
-    """Return the share of the lines of records that say something of their own, 0 to 1.
-
-    Where a misfit shows in M lines of a record, of which a share R is no noise and common to them,
-    it is 1 / (1 + (M - 1) R): what a sample of clusters is worth (L. Kish, *Survey Sampling*,
-    1965).
-    """
-    sheet = assessed.space.sheet
-    left = (sheet.target - assessed.local.force) ** 2
-    whole = left.sum(axis=1)
-    lines = sum(
-        sheet.rows[u.record].size[u.part].size if u.basis is None else u.basis.shape[1]
-        for u in sheet.units
-    )
-    common = max(1.0 - lines / max(float(whole.sum()), 1e-300), 0.0)
-    shown = whole**2 / np.maximum(np.sum(left**2, axis=1), 1e-300)
-    return 1.0 / (1.0 + (float(np.mean(shown)) - 1.0) * common)
 
 
 def _without_idle(found: Found) -> Found:

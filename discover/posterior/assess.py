@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.posterior.climb import Place, climb
-from discover.posterior.local import Judged, Local, fitted, judged
+from discover.posterior.local import Judged, Local, fitted, judged, local_of
 from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Evaluator
 from discover.posterior.setup import behind
@@ -78,7 +78,7 @@ class Assessed:
             if place == before:
                 break
             sizes = place.sizes(space.own_unit)
-            local = fitted(space, self.assessor.evaluator, local.model, sizes, self.curve)
+            local = fitted(space, self.assessor.evaluator, local, sizes, self.curve)
         best = judged(local, local.beside(space, self.curve), place.sizes(space.own_unit))
         return replace(self, local=local, place=place, judged=best, visited=visited)
 
@@ -117,7 +117,8 @@ class Assessor:
         """
         space, curve = self.behind(model), self.curve_of(model)
         sizes = place.sizes(space.own_unit)
-        local = fitted(space, self.coarse, model, sizes, curve, iterations=iterations)
+        here = local_of(space, self.coarse, model)
+        local = fitted(space, self.coarse, here, sizes, curve, iterations=iterations)
         value = judged(local, local.beside(space, curve), sizes).value
         if space is not self.space:
             space.forget()
@@ -125,19 +126,17 @@ class Assessor:
 
     def assess(self, model: Composite, start: Place, *, refit: bool = True) -> Assessed:
         """Return a model fitted and assessed, from sizes to start from."""
-        place, space = start, self.space
-        for _ in range(_ROUNDS):
-            sizes = place.sizes(space.own_unit)
-            numbers = None if refit else ()
-            space = self.behind(model)
-            local = fitted(
-                space, self.evaluator, model, sizes, self.curve_of(model), numbers=numbers
-            )
+        place = start
+        local = local_of(self.space, self.evaluator, model, None if refit else ())
+        for number in range(_ROUNDS):
+            before, space, curve = local, self.behind(local.model), self.curve_of(local.model)
+            local = fitted(space, self.evaluator, local, place.sizes(space.own_unit), curve)
             visited: dict[Place, float] = {}
-            beside = local.beside(space, self.curve_of(model))
-            found = climb(partial(_at, space, local, beside, visited), place)
-            model = local.model
-            stays, place = found == place and space is self.space, found
+            beside = local.beside(space, curve)
+            value = partial(_at, space, local, beside, visited)
+            found = climb(value, place, near=number > 0)
+            stays = found == place and (space is self.space or local is before)
+            place = found
             if stays:
                 break
         _at(space, local, beside, visited, space.quiet)

@@ -96,7 +96,7 @@ class Place:
         return [*alone, *together]
 
 
-def climb(value: Callable[[Place], float], start: Place) -> Place:
+def climb(value: Callable[[Place], float], start: Place, *, near: bool = False) -> Place:
     """Return the place that no neighbour beats, moving one size or two or three at a time.
 
     Parameters
@@ -105,9 +105,11 @@ def climb(value: Callable[[Place], float], start: Place) -> Place:
         Log evidence at a place, nats; asked for at every place that is looked at.
     start : Place
         Where to begin.
+    near : bool
+        True where that is next to the place already: no long strides then.
     """
     here, best = start, value(start)
-    for stride in _STRIDES:
+    for stride in _STRIDES[1:] if near else _STRIDES:
         moved = True
         while moved:
             moved = False

@@ -127,19 +127,17 @@ def judged(local: Local, beside: Comparison, sizes: Sizes) -> Judged:
 def fitted(
     space: Space,
     evaluator: Evaluator,
-    model: Composite,
+    here: Local,
     sizes: Sizes,
     curve: Part | None,
     *,
-    numbers: Sequence[Number] | None = None,
     iterations: int = _ITERATIONS,
 ) -> Local:
-    """Return the model at the values that are most probable at some sizes.
+    """Return a model at the values that are most probable at some sizes, from where it is.
 
     By Gauss and Newton: a step to where the linear form is most probable, halved as long as that
     is no better.
     """
-    here = local_of(space, evaluator, model, numbers)
     if not here.numbers:
         return here
     best = _density(space, here, sizes, curve)

@@ -10,9 +10,10 @@ from scipy.special import logsumexp
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.covariance import Sizes
-from discover.posterior.local import fitted
+from discover.posterior.local import fitted, local_of
 from discover.posterior.metric import Comparison, curve_given
 from discover.posterior.model import Composite
+from discover.posterior.own_share import own_share
 from discover.posterior.space import Part, Space
 from discover.regression.best_subset import best_subsets
 from models.checks import Array
@@ -69,7 +70,8 @@ def with_few_curves(
     given = (at, *range(len(terms), len(wide.terms)))
     free = [n for n in wide.numbers if n.shape is None or n.term not in given]
     sizes = predicting.place.sizes(space.own_unit)
-    best = fitted(space, assessor.evaluator, wide, sizes, None, numbers=free).model
+    begun = local_of(space, assessor.evaluator, wide, free)
+    best = fitted(space, assessor.evaluator, begun, sizes, None).model
     parts = [best.terms[i].fitted for i in given]
     least = _NOTHING * sum(t.coefficient for t in parts)
     kept = tuple(t for t in parts if t.coefficient > least) or (parts[0],)
@@ -121,7 +123,8 @@ def reversal_of(
     terms = _few(columns, total, few, predicting.local.slopes[:, others])
     without = left + main.coefficient * plain
     sizes = assessed.place.sizes(space.own_unit)
-    follows, sure, size, interval = _turning(space, sizes, without, whole, curve)
+    power = 1.0 if assessed.quiet else own_share(predicting)
+    follows, sure, size, interval = _turning(space, sizes, without, whole, curve, power)
     found = Reversal(curve.id, terms, follows, sure, size, interval, 0.0)
     return replace(found, differs=sizes.friction / found.sliding) if found.sliding > 0.0 else found
 
@@ -161,15 +164,17 @@ def _rows(columns: Array) -> Array:
 
 
 def _turning(
-    space: Space, sizes: Sizes, left: Array, whole: Array, curve: Part
+    space: Space, sizes: Sizes, left: Array, whole: Array, curve: Part, power: float
 ) -> tuple[str, float, float, tuple[float, float]]:
-    """Return what friction turns over, how surely, and over how much, from each curve alone."""
+    """Return what friction turns over, how surely, and over how much, from each curve alone.
+
+    Likelihoods are taken to a power, the share of the lines that say something of their own.
+    """
     stacked = np.concatenate([whole, left[:, None]], axis=1)
     gram = Comparison(space, stacked, None).at(sizes).gram[0]
-    power = np.maximum(np.diagonal(gram)[:-1], 1e-300)
     size = space.sheet.scale(whole)
-    grown = 1.0 + size**2 * power
-    values = 0.5 * (size * gram[:-1, -1]) ** 2 / grown - 0.5 * np.log(grown)
+    grown = 1.0 + power * size**2 * np.maximum(np.diagonal(gram)[:-1], 1e-300)
+    values = 0.5 * (power * size * gram[:-1, -1]) ** 2 / grown - 0.5 * np.log(grown)
     kinds: dict[str, list[int]] = {}
     widths = [_width(t) for t in curve.terms]
     for k, t in enumerate(curve.terms):

@@ -10,7 +10,7 @@ import numpy as np
 from discover.bands.extras import Found
 from discover.dean import DeanCheck
 from discover.next_test import NextTest, Rival, admissible_tests, propose
-from discover.posterior.local import fitted, judged
+from discover.posterior.local import fitted, judged, local_of
 from discover.records import RigLimits
 from discover.study.bands import core_probabilities
 from discover.study.estimate import Estimates
@@ -109,7 +109,8 @@ def _rival(
     assessor = estimates.assessor
     sizes = banded.place.sizes(assessor.space.own_unit)
     curve = assessor.curve_of(model)
-    local = fitted(assessor.space, assessor.evaluator, model, sizes, curve)
+    begun = local_of(assessor.space, assessor.evaluator, model)
+    local = fitted(assessor.space, assessor.evaluator, begun, sizes, curve)
     solved = judged(local, local.beside(assessor.space, curve), sizes).solved
     inside = [
         i for i, n in enumerate(local.numbers)

@@ -199,7 +199,9 @@ def friction_text(band: Mapping[str, Any]) -> str:
     if "presliding_displacement" in friction or "transition_speed" in friction:
         pair = ("a displacement", "a speed")
         over, other = pair if "presliding_displacement" in friction else pair[::-1]
-        text += f": {over} and not {other}, {probability(friction['probability'])}"
+        sure = friction["probability"]
+        said = f"{over} and not {other}" if sure >= SURE else f"{over} rather than {other}"
+        text += f": {said}, {probability(sure)}"
     if friction["differs_by_record"] >= _WORTH_SAYING:
         differs = percent(100.0 * friction["differs_by_record"])
         text += f"; it differs between records by {differs}"

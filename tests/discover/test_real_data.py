@@ -126,3 +126,11 @@ def test_machines_that_no_structure_holds_for_have_no_sure_fractional_one(name):
     study = run_study(read_campaign(FOLDER / name))
     assert study.bands[0].remainder.percent > study.bands[0].noise_percent
     assert not any(b.structure == "FOIM" and b.probability >= 0.8 for b in study.bands)
+
+
+@pytest.mark.sweep
+@needs_data
+def test_what_friction_turns_over_is_not_sure_where_the_misfit_says_the_same_everywhere():
+    # Its loop's lag goes as 1 / frequency: a displacement, of a law that no structure has.
+    friction = run_study(read_campaign(FOLDER / "mr-utfsm-0p5A")).bands[0].friction
+    assert friction.key == "presliding_displacement" or friction.probability < 0.8

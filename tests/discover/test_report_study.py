@@ -170,6 +170,13 @@ def test_verdict_says_in_each_line_one_thing_and_names_the_convention():
     assert "IOIM-linear (17 %) not ruled out" in lines["Certainty"]
 
 
+def test_what_friction_turns_over_is_said_as_surely_as_it_is_told():
+    document = sample_document()
+    document["bands"][0]["friction"]["probability"] = 0.54
+    lines = "".join(verdict_lines(document)).replace("\u202f", " ")
+    assert ": a displacement rather than a speed, 54 %" in lines
+
+
 def test_headline_is_one_sentence_with_structures_boundary_and_dean_verdict():
     document = sample_document()
     assert headline(document) == (
