@@ -127,9 +127,10 @@ class RecordForces:
         found = np.zeros((len(terms), before.size))
         for k, t in enumerate(terms):
             with np.errstate(over="ignore", invalid="ignore"):  # a joint may shake itself apart
-                change = self.of_model(ForceModel((*model.terms, t))) - before
-            if np.all(np.isfinite(change)):
-                found[k] = change / t.coefficient
+                change = (self.of_model(ForceModel((*model.terms, t))) - before) / t.coefficient
+                bounded = np.isfinite(change @ change)
+            if bounded:
+                found[k] = change
         return found
 
     def _steady(self, model: ForceModel) -> Array:

@@ -1,0 +1,33 @@
+"""Columns as changes of the force pass them on."""
+
+import numpy as np
+import pytest
+
+from discover.motion_fit import observe
+from discover.rows import record_rows
+from discover.rows.columns import Behind, force_columns
+from models.constitutive import FittedTerm, ForceModel
+from tests.discover.gap_data import device, record
+
+GAIN = {"load": 1.0, "load_power": 2.0}
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return record_rows(observe(record(1.0, 0.01, device, np.random.default_rng(0))))
+
+
+def behind(rows, *terms):
+    model = ForceModel((
+        FittedTerm("inertia", 120.0),
+        FittedTerm("viscous-damping", 800.0),
+        FittedTerm("sensor-gain", 1e-3, GAIN),
+    ))  # fmt: skip
+    return Behind({0: model}, {rows.file: 0})(rows, terms)
+
+
+def test_a_column_passes_a_gain_as_a_small_force_does(rows):
+    # y = F (1 + g F^2 / N^2): a small force f is read as f (1 + 3 g F^2 / N^2).
+    (found,) = behind(rows, FittedTerm("viscous-damping", 1.0))
+    (plain,) = force_columns(rows, [FittedTerm("viscous-damping", 1.0)])
+    assert np.linalg.norm(found) > 1.2 * np.linalg.norm(plain)
