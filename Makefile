@@ -33,7 +33,7 @@ blind: $(VENV)/.installed-dev ## the blind study of missing effects, both sets; 
 	$(BIN)/python -m tests.calibration.gap --set both --jobs $(JOBS)
 
 notebooks: $(VENV)/.installed-notebooks ## run every notebook and keep its pictures
-	$(BIN)/jupyter nbconvert --to notebook --execute --inplace notebooks/*.ipynb
+	printf '%s\n' notebooks/*.ipynb | xargs -P $(JOBS) -n 1 $(BIN)/jupyter nbconvert --to notebook --execute --inplace
 
 docs: $(VENV)/.installed-docs ## the documentation's pages, in build/docs; a warning stops it
 	$(BIN)/python -m sphinx -W --keep-going -q -E -d build/doctrees docs build/docs

@@ -40,10 +40,16 @@ class Estimates:
 
     @property
     def untold(self) -> frozenset[str]:
-        """Ids of terms none of which is told from zero."""
+        """Ids of terms none of which is told from zero.
+
+        Of what friction's curve may hold as well, as a fall with speed, the share that its own
+        term has says nothing: whether it is there is for the need of it to tell.
+        """
         every = [t for terms in self.terms for t in terms]
         told = {t.fitted.id for t in every if t.interval[0] > 0.0 or t.interval[1] < 0.0}
-        return frozenset(t.fitted.id for t in every) - told
+        curve = self.assessor.friction
+        shared = {t.id for t in curve.terms} if curve is not None else set[str]()
+        return frozenset(t.fitted.id for t in every) - told - shared
 
 
 def estimated(prepared: Prepared, found: Found) -> Estimates:
