@@ -109,6 +109,7 @@ def test_repeats_of_one_condition_belong_together_and_more_friction_does_not(
         assert named == ["pressure.csv"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_terminal_tells_it_beside_the_verdict(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
