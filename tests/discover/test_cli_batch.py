@@ -123,7 +123,7 @@ def test_results_are_the_same_to_the_byte_for_any_number_of_processes(fleet, who
     assert ours == theirs
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 @pytest.mark.filterwarnings("ignore")  # of Dask's own
 def test_results_are_the_same_to_the_byte_on_a_cluster(fleet, whole, tmp_path):
     distributed = pytest.importorskip("distributed")

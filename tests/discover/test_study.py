@@ -87,7 +87,7 @@ def test_a_delay_of_the_force_channel_is_found_and_corrected():
         return law(amplitude, omega, theta - omega * 1e-3)
 
     study = run_study(
-        campaign(late, frequencies=(0.5, 2.0, 8.0), amplitudes=(0.005, 0.015))
+        campaign(late, frequencies=(0.2, 0.5, 1.0, 2.0, 4.0, 8.0), amplitudes=(0.015,))
     )
     delays = [n for n in study.nuisance if n.id == "time-delay"]
     assert delays
