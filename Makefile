@@ -15,8 +15,8 @@ study: $(VENV)/.installed ## discover on the shipped campaign; prints the verdic
 test: $(VENV)/.installed-dev ## all tests and doctests but the sweeps
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m 'not sweep'
 
-sweep: $(VENV)/.installed-dev ## a part of make calibration and make blind, held to their bars, and long measured records
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m sweep tests
+sweep: $(VENV)/.installed-dev ## a part of make calibration and make blind, held to their bars, and what takes long alone
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m sweep tests # a study that tests share is made once
 
 check: $(VENV)/.installed-dev ## style, types and layers
 	$(BIN)/ruff check .

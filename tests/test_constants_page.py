@@ -31,6 +31,13 @@ def pages():
     return page_constants
 
 
+@pytest.fixture(scope="module")
+def listed(pages):
+    """Return the constants on the page: file and name."""
+    rows = re.findall(r"^\| `([^`]+)` \| `([^`]+)` \| `[^`]+` \|", pages.constants_page(), re.M)
+    return {(module, name) for module, names in rows for name in names.split(", ")}
+
+
 def numbers_of(module):
     """Return the names that a loaded module itself gives to numbers and arrays of them."""
     source = Path(module.__file__).read_text(encoding="utf-8")
@@ -43,10 +50,8 @@ def numbers_of(module):
 
 
 @pytest.mark.parametrize("folder", ENGINE)
-def test_page_lists_every_number_that_the_loaded_modules_hold(pages, folder):
+def test_page_lists_every_number_that_the_loaded_modules_hold(listed, folder):
     package = importlib.import_module(folder.replace("/", "."))
-    rows = re.findall(r"^\| `([^`]+)` \| `([^`]+)` \| `[^`]+` \|", pages.constants_page(), re.M)
-    listed = {(module, name) for module, names in rows for name in names.split(", ")}
     held = set()
     for _, name, _ in pkgutil.iter_modules(package.__path__, package.__name__ + "."):
         module = importlib.import_module(name)

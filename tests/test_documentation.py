@@ -80,7 +80,7 @@ def said(text):
 
 
 @pytest.mark.slow
-def test_the_readme_shows_what_the_program_prints(capsys, tmp_path, monkeypatch):
+def test_the_readme_shows_what_the_program_prints(capsys, tmp_path, monkeypatch, undrawn):
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     study, gap = re.findall(r"^```text\n(.*?)^```", text, re.M | re.S)
     monkeypatch.chdir(tmp_path)
@@ -96,7 +96,7 @@ def test_the_readme_shows_what_the_program_prints(capsys, tmp_path, monkeypatch)
 def records(tmp_path_factory):
     """Return a small campaign of a known device: what pages call the reader's own."""
     folder = tmp_path_factory.mktemp("own") / "records"
-    options = "--model ioim-laminar --frequencies 0.5,1,2,4 --amplitudes 5,10 --held-out 2"
+    options = "--model ioim-laminar --frequencies 0.5,2 --amplitudes 5,10 --held-out 1"
     assert main(["synth", str(folder), "--device", "device-12", *options.split()]) == 0
     return folder
 
@@ -129,7 +129,7 @@ def printed_below(text):
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES, ids=named)
 def test_every_block_of_a_page_runs_and_prints_what_is_shown(
-    page, records, tmp_path, monkeypatch, capsys
+    page, records, tmp_path, monkeypatch, capsys, undrawn
 ):
     monkeypatch.chdir(tmp_path)
     matplotlib.use("svg")

@@ -75,7 +75,7 @@ def test_wheel_holds_the_packages_the_templates_and_the_campaign(wheel):
     assert tops == {"models", "discover", f"inerter_discovery-{__version__}.dist-info"}
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 def test_wheel_in_a_fresh_environment_studies_the_shipped_campaign(wheel, tmp_path):
     venv.create(tmp_path / "fresh", with_pip=True)
     programs = tmp_path / "fresh" / ("Scripts" if os.name == "nt" else "bin")

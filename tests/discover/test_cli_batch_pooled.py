@@ -7,6 +7,7 @@ import pytest
 
 from discover.cli import main
 from tests.discover.batch.made_fleet import make_device
+from tests.undrawn import blank_pictures
 
 ORDERS = {"d0": 0.57, "d1": 0.60, "d2": 0.63, "thin": 0.61}
 
@@ -34,7 +35,8 @@ def results(fleet, tmp_path_factory):
     out = tmp_path_factory.mktemp("out") / "batch"
     found = []
     for options in ([], ["--pooled"], []):
-        assert main(["batch", str(fleet), "-o", str(out), *options]) == 0
+        with blank_pictures():
+            assert main(["batch", str(fleet), "-o", str(out), *options]) == 0
         found.append(content(out))
     return found
 

@@ -38,7 +38,7 @@ def _csv(path: Path, header: str, frequency: float, *, timed: bool = True) -> No
 
 
 @pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, undrawn: None) -> Path:
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -61,6 +61,7 @@ def test_discover_prints_the_answer_and_what_is_next_and_writes_the_folder(campa
     assert all(p.suffix == ".svg" for p in (folder / "figures").iterdir())
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_json_is_the_document_and_nothing_else(campaign, here, capsys):
     assert main(["discover", str(campaign), "--json", "-o", "out", "--seed", "3"]) == 0
     out, err = capsys.readouterr()
@@ -71,6 +72,7 @@ def test_json_is_the_document_and_nothing_else(campaign, here, capsys):
     assert "inerter discover" in (here / "out" / "report.html").read_text()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_written_model_is_the_device_that_made_the_records(campaign, here):
     assert main(["discover", str(campaign), "-o", "out"]) == 0
     model = SegmentedModel.from_dict(json.loads((here / "out" / "model.json").read_text()))
@@ -78,6 +80,7 @@ def test_the_written_model_is_the_device_that_made_the_records(campaign, here):
     assert model.bands[0].model.coefficient("inertia") == pytest.approx(370.38, rel=0.01)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_only_the_terms_asked_for_are_kept(campaign, here, capsys):
     terms = "inertia,viscous-damping,force-offset"
     assert main(["discover", str(campaign), "--terms", terms, "--json", "--bands", "1"]) == 0
@@ -94,6 +97,7 @@ def test_an_unknown_term_is_named_with_those_that_there_are(campaign, here, caps
     assert not (here / "inerter-out").exists()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_check_passes_good_records_and_writes_its_document(campaign, here, capsys):
     assert main(["check", str(campaign), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
@@ -132,6 +136,7 @@ def test_check_writes_its_report_and_pictures_and_says_what_comes_next(campaign,
     assert len(document["pairs"]) == 6
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_check_without_a_campaign_takes_the_shipped_one_as_discover_does(
     campaign, here, capsys, monkeypatch
 ):
@@ -141,6 +146,7 @@ def test_check_without_a_campaign_takes_the_shipped_one_as_discover_does(
     assert (here / "inerter-out" / "check-laminar" / "check.json").is_file()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_spring_alone_is_ordinary_data(here, capsys):
     phase = np.arange(600) / 10.0
     rows = np.column_stack([phase / 10.0, 0.01 * np.sin(phase), 2000.0 * np.sin(phase)])
@@ -158,6 +164,7 @@ def test_a_spring_alone_is_ordinary_data(here, capsys):
     assert friction["differs_by_record"] < 10.0
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_check_fails_where_the_force_has_the_wrong_sign(campaign, here, capsys):
     turned = here / "turned"
     turned.mkdir()
@@ -224,6 +231,7 @@ def test_ctrl_c_exits_130_without_a_traceback_and_leaves_no_results(here):
     assert list(here.iterdir()) == []
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_gap_with_another_model_leaves_the_first_answer_in_its_folder(campaign, here, capsys):
     for model in ("ioim-laminar", "fit:inertia,quadratic-damping,coulomb-friction"):
         arguments = ["--model", model, "--effects", "viscous-damping"]

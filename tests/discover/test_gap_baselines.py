@@ -107,6 +107,7 @@ def folder(tmp_path_factory):
     return where
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(
     ("model", "notes"),
     [
@@ -129,6 +130,7 @@ def test_the_answer_says_what_the_baseline_is(
     assert ("Dean number, paper convention, below 100" in page) == (model == "sfoim")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_presets_keep_the_papers_values_and_nothing_is_left_out(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     plan = ["--frequencies", "0.5,2,6", "--amplitudes", "5,10", "--noise", "0.5%"]

@@ -5,7 +5,7 @@ import pytest
 from tests.benchmarks.bench_long import SMALL, discovered
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 def test_memory_does_not_grow_with_the_record():
     _, small = discovered(SMALL)
     _, first = discovered(6_000_000)

@@ -159,6 +159,7 @@ def written(folder, *, system=True):
     return folder
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_gap_on_motion_closes_with_the_effect_that_was_missing(tmp_path, capsys):
     folder = written(tmp_path / "campaign")
     arguments = ["--model", "fit:inertia,viscous-damping", "--on", "motion"]

@@ -272,7 +272,8 @@ class Dying:
 signals.begin()
 try:
     Dying()
-    time.sleep(20)
+    for _ in range(200):
+        time.sleep(0.1)
     print("lost")
 except KeyboardInterrupt:
     print("interrupted")

@@ -32,18 +32,22 @@ def holds(study, name, value):
     )
 
 
-@needs_data
-def test_published_values_of_emps_lie_in_the_intervals_of_its_published_terms():
-    study = run_study(read_campaign(FOLDER / "emps"), StudyOptions(terms=PUBLISHED))
-    assert coefficients(study)["inertia"] == pytest.approx(95.1, rel=0.01)
-    assert holds(study, "inertia", 95.1089)
-    assert holds(study, "viscous-damping", 203.5034)
-    assert holds(study, "force-offset", -3.1648)
+@pytest.fixture(scope="module")
+def published():
+    return run_study(read_campaign(FOLDER / "emps"), StudyOptions(terms=PUBLISHED))
 
 
 @needs_data
-def test_emps_gives_its_published_values_for_its_published_terms():
-    found = coefficients(run_study(read_campaign(FOLDER / "emps"), StudyOptions(terms=PUBLISHED)))
+def test_published_values_of_emps_lie_in_the_intervals_of_its_published_terms(published):
+    assert coefficients(published)["inertia"] == pytest.approx(95.1, rel=0.01)
+    assert holds(published, "inertia", 95.1089)
+    assert holds(published, "viscous-damping", 203.5034)
+    assert holds(published, "force-offset", -3.1648)
+
+
+@needs_data
+def test_emps_gives_its_published_values_for_its_published_terms(published):
+    found = coefficients(published)
     assert found["inertia"] == pytest.approx(95.1, rel=0.01)
     assert found["viscous-damping"] == pytest.approx(203.0, rel=0.03)
     assert found["coulomb-friction"] == pytest.approx(20.4, rel=0.03)
@@ -83,6 +87,7 @@ def test_emps_searched_freely_gives_its_published_damping_and_friction(emps):
     assert found["coulomb-friction"] == pytest.approx(20.4, rel=0.03)
 
 
+@pytest.mark.sweep
 @needs_data
 def test_a_real_inerter_has_its_inertance_friction_with_memory_and_no_spring():
     study = run_study(read_campaign(FOLDER / "inerter-cvt-r0"))

@@ -63,6 +63,7 @@ def test_a_round_that_serves_the_quiet_records_says_so():
     assert "gap 18.3 % to 19.5 % pooled, 61 % to 20.4 % with every record counting alike" in text
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("verdict", ["agrees", "unexplained"])
 def test_nothing_named_still_reports(verdict):
     document = sample_gap_document()

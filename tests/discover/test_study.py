@@ -87,7 +87,7 @@ def test_a_delay_of_the_force_channel_is_found_and_corrected():
         return law(amplitude, omega, theta - omega * 1e-3)
 
     study = run_study(
-        campaign(late, frequencies=(0.2, 0.5, 1.0, 2.0, 4.0, 8.0), amplitudes=(0.005, 0.015))
+        campaign(late, frequencies=(0.2, 0.5, 1.0, 2.0, 4.0, 8.0), amplitudes=(0.015,))
     )
     delays = [n for n in study.nuisance if n.id == "time-delay"]
     assert delays
@@ -103,7 +103,8 @@ def test_terms_that_are_asked_for_are_all_kept():
 
 
 def test_the_number_of_bands_can_be_fixed():
-    study = run_study(campaign(fractional(*M2)), StudyOptions(bands=2))
+    few = campaign(fractional(*M2), frequencies=(0.5, 1.0, 3.0, 9.0), amplitudes=(0.005, 0.01))
+    study = run_study(few, StudyOptions(bands=2))
     assert len(study.bands) == 2
 
 
@@ -138,7 +139,7 @@ def test_units_do_not_change_the_answer():
 
 def test_a_record_of_the_wrong_sign_is_an_error_that_the_study_says_first():
     c1, c2 = DEVICE_12.laminar_coefficients
-    whole = campaign(integer(370.38, c2, c1, 0.0, 400.0))
+    whole = campaign(integer(370.38, c2, c1, 0.0, 400.0), amplitudes=(0.01,))
     turned = replace(whole.records[3], force=-whole.records[3].force)
     records = (*whole.records[:3], turned, *whole.records[4:])
     options = StudyOptions(

@@ -1,4 +1,8 @@
-"""A small part of the blind study, held to its bars less the error of a count."""
+"""A small part of the blind study, held to its bars less the error of a count.
+
+Of each set a third of the effects of one device at one size and four campaigns with nothing hidden,
+and of the first three pairs: 43 campaigns, where the whole study has more than 2,000.
+"""
 
 import pytest
 
@@ -9,7 +13,7 @@ from tests.calibration.gap.table import TIMES_NOISE, bars
 
 pytestmark = pytest.mark.sweep
 DEVICE = 10_000  # apart from those of the kept table, as the campaigns below
-CLEAN, PAIRS = range(DEVICE + 1000, DEVICE + 1006), range(DEVICE + 3000, DEVICE + 3003)
+CLEAN, PAIRS = range(DEVICE + 1000, DEVICE + 1004), range(DEVICE + 3000, DEVICE + 3003)
 SIZES = (0.2, 0.1, 0.05)
 
 
@@ -19,7 +23,7 @@ def part(kind, place):
 
 
 @pytest.mark.parametrize(
-    ("kind", "place"), [("first", 1), ("first", 2), ("second", 0), ("third", 1)]
+    ("kind", "place"), [("first", 2), ("second", 0), ("third", 1)]
 )
 def test_effects_are_named_and_close_the_gap(kind, place):
     bar = bars(kind)

@@ -1,4 +1,8 @@
-"""A small part of the study, held to its bars less the error of a count."""
+"""A small part of the study, held to its bars less the error of a count.
+
+Of the 954 campaigns of the kept table as many as 27, by fixed steps through the sets of one seed:
+8 of "structures", 7 of "two-boundaries", 5 of "one-extra", 3 of "outside" and 4 of "thin".
+"""
 
 import pytest
 
@@ -41,7 +45,7 @@ def test_cores_and_boundaries_are_found():
 
 def test_two_boundaries_are_found():
     bars = BARS["two-boundaries"]
-    three = answered("two-boundaries", 1, lambda case: case.kind == "three-bands")
+    three = answered("two-boundaries", 1, lambda case: case.place < 4)
     assert holds([o.bands_right for o in three], bars["number"])
     assert holds([all(o.brackets) for o in three], bars["brackets"])
 
@@ -73,4 +77,5 @@ def test_what_is_outside_is_a_remainder_of_its_size():
 
 
 def test_thin_data_are_not_surer_than_right():
-    assert sure_are_right(answered("thin", 4))
+    """One campaign of each kind of device, in another law of friction each."""
+    assert sure_are_right(answered("thin", 11))

@@ -15,6 +15,7 @@ from discover.records import Campaign
 from discover.study import run_study
 
 REAL = Path(__file__).resolve().parents[4] / "shared" / "real-data"
+LONG = pytest.mark.sweep
 SHIPPED = Path(__file__).resolve().parents[3] / "data"
 PLAN = ((0.3, 15.0), (0.6, 15.0), (1.2, 15.0), (0.5, 6.0), (1.0, 6.0), (2.0, 6.0), (4.0, 6.0),
         (8.0, 3.0))  # fmt: skip
@@ -109,6 +110,7 @@ def test_repeats_of_one_condition_belong_together_and_more_friction_does_not(
         assert named == ["pressure.csv"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_terminal_tells_it_beside_the_verdict(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -131,9 +133,9 @@ def test_shipped_campaigns_belong_together(name: str) -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["elastomer-vhb4910", "foot-single-cam", "fsae-damper-hard", "fsae-damper-soft",
-     "inerter-cvt-r0", "inerter-cvt-steady", "mr-utfsm-0p5A", "robot-franka-j7",
-     "seal-oring-1bar", "seal-xring", "silverbox"],
+    ["elastomer-vhb4910", "foot-single-cam", pytest.param("fsae-damper-hard", marks=LONG),
+     "fsae-damper-soft", "inerter-cvt-r0", "inerter-cvt-steady", "mr-utfsm-0p5A",
+     "robot-franka-j7", "seal-oring-1bar", "seal-xring", pytest.param("silverbox", marks=LONG)],
 )  # fmt: skip
 def test_of_measured_campaigns_only_the_seal_at_several_pressures_is_told(name: str) -> None:
     if not (REAL / name).is_dir():
