@@ -9,15 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from discover.motion_fit.observation import real_rows
 from discover.rows import RecordRows
 from discover.rows.columns import force_columns
 from models.checks import Array
 from models.constitutive import FittedTerm
-from models.motion import sine_motion
+from models.motion import Motion, sine_motion
+from models.terms import TERMS
 
 _SAMPLES = 128  # of one cycle
 _LINES = 8  # of a test that is added
@@ -36,18 +39,31 @@ class SineTest:
 
     def columns(self, terms: Sequence[FittedTerm]) -> Array:
         """Return terms' lines over their noise, (2 L, K)."""
-        motion = sine_motion(self.amplitude, self.frequency, samples=_SAMPLES)
-        forces = np.stack([_force(t, motion) for t in terms])
-        lines = np.fft.rfft(forces, axis=-1)[:, : self.deviation.size] * (np.sqrt(2.0) / _SAMPLES)
-        lines[:, 0] /= np.sqrt(2.0)
-        return np.asarray(real_rows(lines / self.deviation).T)
+        own = [
+            _lines(self.frequency, self.amplitude, t.id, tuple(t.shape.items())) for t in terms
+        ]
+        return np.asarray(real_rows(np.stack(own)[:, : self.deviation.size] / self.deviation).T)
 
 
-def _force(fitted: FittedTerm, motion: object) -> Array:
-    column = fitted.term.column
+@lru_cache(maxsize=1024)
+def _motion(frequency: float, amplitude: float) -> Motion:
+    return sine_motion(amplitude, frequency, samples=_SAMPLES)
+
+
+# Where a test is added in thought, all but one of the tests are the same a thousand times.
+@lru_cache(maxsize=16384)
+def _lines(
+    frequency: float, amplitude: float, term: str, shape: tuple[tuple[str, float], ...]
+) -> NDArray[np.complex128]:
+    """Return a term's lines in a sine test, their mean square that of the force, (N/2 + 1,) N."""
+    column = TERMS[term].column
     if column is None:
-        raise ValueError(f"{fitted.id} adds no force")
-    return column(motion, fitted.shape)  # type: ignore[arg-type]
+        raise ValueError(f"{term} adds no force")
+    force = column(_motion(frequency, amplitude), dict(shape))
+    lines: NDArray[np.complex128] = np.fft.rfft(force) * (np.sqrt(2.0) / _SAMPLES)
+    lines[0] /= np.sqrt(2.0)
+    lines.flags.writeable = False
+    return lines
 
 
 @dataclass(frozen=True)
