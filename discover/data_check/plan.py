@@ -7,20 +7,18 @@ plan can tell is judged without them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from discover.motion_fit.observation import real_rows
+from discover.motion_fit.observation import Lines, real_rows
 from discover.rows import RecordRows
 from discover.rows.columns import force_columns
 from models.checks import Array
 from models.constitutive import FittedTerm
 from models.motion import Motion, sine_motion
-from models.terms import TERMS
 
 _SAMPLES = 128  # of one cycle
 _LINES = 8  # of a test that is added
@@ -37,33 +35,29 @@ class SineTest:
     deviation: Array
     """(L,) N, standard deviation of the real and of the imaginary part of each line."""
 
+    _known: dict[Hashable, Lines] = field(default_factory=dict, repr=False, compare=False)
+    """Terms' lines: where a test is added in thought, the others are asked for them again."""
+
     def columns(self, terms: Sequence[FittedTerm]) -> Array:
         """Return terms' lines over their noise, (2 L, K)."""
-        own = [
-            _lines(self.frequency, self.amplitude, t.id, tuple(t.shape.items())) for t in terms
-        ]
-        return np.asarray(real_rows(np.stack(own)[:, : self.deviation.size] / self.deviation).T)
+        lines = np.stack([self._lines(t) for t in terms])
+        return np.asarray(real_rows(lines[:, : self.deviation.size] / self.deviation).T)
 
+    def _lines(self, fitted: FittedTerm) -> Lines:
+        """Return a term's lines, their mean square that of the force, (N / 2 + 1,) N."""
+        key = (fitted.id, *fitted.shape.items())
+        if key not in self._known:
+            if fitted.term.column is None:
+                raise ValueError(f"{fitted.id} adds no force")
+            lines = np.fft.rfft(fitted.term.column(self._motion, fitted.shape))
+            lines *= np.sqrt(2.0) / _SAMPLES
+            lines[0] /= np.sqrt(2.0)
+            self._known[key] = lines
+        return self._known[key]
 
-@lru_cache(maxsize=1024)
-def _motion(frequency: float, amplitude: float) -> Motion:
-    return sine_motion(amplitude, frequency, samples=_SAMPLES)
-
-
-# Where a test is added in thought, all but one of the tests are the same a thousand times.
-@lru_cache(maxsize=16384)
-def _lines(
-    frequency: float, amplitude: float, term: str, shape: tuple[tuple[str, float], ...]
-) -> NDArray[np.complex128]:
-    """Return a term's lines in a sine test, their mean square that of the force, (N/2 + 1,) N."""
-    column = TERMS[term].column
-    if column is None:
-        raise ValueError(f"{term} adds no force")
-    force = column(_motion(frequency, amplitude), dict(shape))
-    lines: NDArray[np.complex128] = np.fft.rfft(force) * (np.sqrt(2.0) / _SAMPLES)
-    lines[0] /= np.sqrt(2.0)
-    lines.flags.writeable = False
-    return lines
+    @cached_property
+    def _motion(self) -> Motion:
+        return sine_motion(self.amplitude, self.frequency, samples=_SAMPLES)
 
 
 @dataclass(frozen=True)
