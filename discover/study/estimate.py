@@ -42,14 +42,19 @@ class Estimates:
     def untold(self) -> frozenset[str]:
         """Ids of terms none of which is told from zero.
 
-        Of what friction's curve may hold as well, as a fall with speed, the share that its own
-        term has says nothing: whether it is there is for the need of it to tell.
+        What friction's curve may hold as well, a fall with speed, is told by the need of it: how
+        the fall is shared out between its own term and the curve says nothing, unless the term
+        predicts best without any.
         """
-        every = [t for terms in self.terms for t in terms]
-        told = {t.fitted.id for t in every if t.interval[0] > 0.0 or t.interval[1] < 0.0}
         curve = self.assessor.friction
         shared = {t.id for t in curve.terms} if curve is not None else set[str]()
-        return frozenset(t.fitted.id for t in every) - told - shared
+        every = [t for terms in self.terms for t in terms]
+        told = {
+            t.fitted.id for t in every
+            if t.interval[0] > 0.0 or t.interval[1] < 0.0
+            or (t.fitted.id in shared and t.fitted.coefficient != 0.0)
+        }
+        return frozenset(t.fitted.id for t in every) - told
 
 
 def estimated(prepared: Prepared, found: Found) -> Estimates:
