@@ -111,14 +111,11 @@ class Assessor:
     def glance(
         self, model: Composite, place: Place, *, iterations: int
     ) -> tuple[Composite, float]:
-        """Return a model after a few steps of a fit, and its log evidence at these sizes, nats.
-
-        In a hurry, with a quarter of a cycle's points.
-        """
+        """Return a model after a few steps of a fit, and its log evidence at these sizes, nats."""
         space, curve = self.behind(model), self.curve_of(model)
         sizes = place.sizes(space.own_unit)
-        here = local_of(space, self.coarse, model)
-        local = fitted(space, self.coarse, here, sizes, curve, iterations=iterations)
+        here = local_of(space, self.evaluator, model)
+        local = fitted(space, self.evaluator, here, sizes, curve, iterations=iterations)
         value = judged(local, local.beside(space, curve), sizes).value
         if space is not self.space:
             space.forget()

@@ -187,7 +187,7 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
 
 
 def _starting(ranked: Sequence[Gain]) -> list[Gain]:
-    """Return the shapes from which a fit starts: the best of each discrete choice, then others.
+    """Return the shapes from which a fit starts: the plain one, the best of each discrete choice.
 
     Between shapes that a fit can turn into each other, it will find its way; between the others
     a gain in a straight line says too little.
@@ -196,14 +196,28 @@ def _starting(ranked: Sequence[Gain]) -> list[Gain]:
     shapes = [g for g in ranked if trials[id(g.trial)] is g]
     seen, first, others = set[tuple[object, ...]](), list[Gain](), list[Gain]()
     for gain in shapes:
-        term, shape = gain.trial.terms[0].term, gain.trial.terms[0].shape
-        choice = (
-            len(gain.trial.terms),
-            *(shape[p.name] if not p.fitted else shape[p.name] == 0.0 for p in term.parameters),
-        )
+        choice = _choice(gain)
         (others if choice in seen else first).append(gain)
         seen.add(choice)
+    first.sort(key=lambda gain: not _is_plain(gain))
     return [*first, *others][:_SHAPES]
+
+
+def _choice(gain: Gain) -> tuple[object, ...]:
+    """Return what a fit can't turn into something else: discrete choices, and what is at zero."""
+    term, shape = gain.trial.terms[0].term, gain.trial.terms[0].shape
+    return (
+        len(gain.trial.terms),
+        *(shape[p.name] if not p.fitted else shape[p.name] == 0.0 for p in term.parameters),
+    )
+
+
+def _is_plain(gain: Gain) -> bool:
+    """Tell whether a trial is one term whose discrete choices are all as they are by default."""
+    only, *more = gain.trial.terms
+    return not more and all(
+        p.fitted or only.shape[p.name] == p.default for p in only.term.parameters
+    )
 
 
 def _begun(gain: Gain) -> list[FittedTerm]:

@@ -75,7 +75,7 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch, undrawn):
+def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
