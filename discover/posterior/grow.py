@@ -187,10 +187,10 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
 
 
 def _starting(ranked: Sequence[Gain]) -> list[Gain]:
-    """Return the shapes from which a fit starts: the plain one, the best of each discrete choice.
+    """Return the shapes from which a fit starts: the best of each discrete choice, then others.
 
-    Between shapes that a fit can turn into each other, it will find its way; between the others
-    a gain in a straight line says too little.
+    The plain one is always among them. Between shapes that a fit can turn into each other, it will
+    find its way; between the others a gain in a straight line says too little.
     """
     trials = {id(g.trial): g for g in reversed(ranked)}
     shapes = [g for g in ranked if trials[id(g.trial)] is g]
@@ -199,8 +199,8 @@ def _starting(ranked: Sequence[Gain]) -> list[Gain]:
         choice = _choice(gain)
         (others if choice in seen else first).append(gain)
         seen.add(choice)
-    first.sort(key=lambda gain: not _is_plain(gain))
-    return [*first, *others][:_SHAPES]
+    chosen = [*first, *others][:_SHAPES]
+    return chosen + [g for g in first[_SHAPES:] if _is_plain(g)]
 
 
 def _choice(gain: Gain) -> tuple[object, ...]:
