@@ -18,9 +18,9 @@ MODEL = ["--model", "ioim-laminar"]
 
 @pytest.fixture(scope="module")
 def fleet(tmp_path_factory):
-    """Two campaigns of one test, and one that can't be read."""
+    """Three campaigns of one test, and one that can't be read."""
     folder = tmp_path_factory.mktemp("fleet")
-    for seed in (1, 2):
+    for seed in (1, 2, 3):
         arguments = ["--device", "device-12", "--model", "ioim-laminar", "--seed", str(seed)]
         assert main(["synth", str(folder / f"d{seed}"), *arguments, *PLAN]) == 0
     broken = folder / "broken"
@@ -49,7 +49,7 @@ def whole(fleet, tmp_path_factory):
 def test_all_but_the_broken_campaign_are_studied_and_its_fault_is_told(fleet, whole):
     document = json.loads((whole / "batch.json").read_text())
     states = {c["campaign"]: c["status"] for c in document["campaigns"]}
-    assert states == {"broken": "failed", "d1": "done", "d2": "done"}
+    assert states == {"broken": "failed", "d1": "done", "d2": "done", "d3": "done"}
     (broken,) = [c for c in document["campaigns"] if c["status"] == "failed"]
     assert "gone.csv" in broken["error"]
     assert "\n" not in broken["error"]
@@ -102,9 +102,10 @@ def interrupted_after(folder, command):
 def test_an_interrupted_batch_goes_on_and_ends_in_the_same_table(fleet, whole, tmp_path):
     out = tmp_path / "out"
     command = ["batch", str(fleet), "-o", str(out), *MODEL]
-    assert interrupted_after(out / "d1", command) == (130, "inerter: interrupted")
-    assert not (out / "table.csv").exists()
-    assert not (out / "d2").exists()
+    for done in ("d1", "d2"):
+        assert interrupted_after(out / done, command) == (130, "inerter: interrupted")
+        assert not (out / "table.csv").exists()
+        assert not (out / "d3").exists()
     assert main(command) == 1
     ours, theirs = content(tmp_path / "out"), content(whole)
     assert ours.pop("report.html") != b""  # its last line is the command, with the folder

@@ -79,14 +79,15 @@ def test_one_record_gives_one_band_and_says_why():
     assert any("one record can't show a boundary" in f.text for f in study.findings)
 
 
-def test_a_delay_of_the_force_channel_is_found_and_corrected():
+@pytest.mark.parametrize("frequencies", [(0.2, 0.5, 1.0, 2.0, 4.0, 8.0), (0.5, 2.0, 8.0)])
+def test_a_delay_of_the_force_channel_is_found_and_corrected(frequencies):
     c1, c2 = DEVICE_12.laminar_coefficients
     law = integer(370.38, c2, c1, 0.0, 400.0)
 
     def late(amplitude, omega, theta):
         return law(amplitude, omega, theta - omega * 1e-3)
 
-    study = run_study(campaign(late, frequencies=(0.5, 2.0, 8.0), amplitudes=(0.005, 0.015)))
+    study = run_study(campaign(late, frequencies=frequencies, amplitudes=(0.005, 0.015)))
     (delay,) = (n for n in study.nuisance if n.id == "time-delay")  # and not one of each test's own
     assert delay.value == pytest.approx(1e-3, rel=0.05)
     inertia = terms(study.bands[0])["inertia"].fitted.coefficient

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from discover.motion_fit import observe
-from discover.rows import record_rows
+from discover.rows import RecordForces, record_rows
 from discover.rows.columns import Behind, force_columns
 from models.constitutive import FittedTerm, ForceModel
 from tests.discover.gap_data import device, record
@@ -31,3 +31,10 @@ def test_a_column_passes_a_gain_as_a_small_force_does(rows):
     (found,) = behind(rows, FittedTerm("viscous-damping", 1.0))
     (plain,) = force_columns(rows, [FittedTerm("viscous-damping", 1.0)])
     assert np.linalg.norm(found) > 1.2 * np.linalg.norm(plain)
+
+
+def test_a_change_too_great_to_have_a_square_is_no_column(rows):
+    # y = F (1 + g (F / L)^2) at L = 1e-100 N: of F^3 / L^2 there is a number, of its square none.
+    tiny = FittedTerm("sensor-gain", 1e-3, {**GAIN, "load": 1e-100})
+    (found,) = RecordForces(rows).changes(ForceModel((FittedTerm("inertia", 120.0),)), [tiny])
+    assert not np.any(found)
