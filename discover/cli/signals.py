@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 _NUMBERS = (signal.SIGINT, signal.SIGTERM)
 _PAUSE = 0.01  # s
 _state = {"leaving": False, "interrupted": False}
+_came = {"number": int(signal.SIGINT), "thread": 0}
 
 
 def leaving() -> None:
@@ -32,6 +33,7 @@ def interrupted() -> bool:
 def _interrupt(number: int, frame: object) -> None:
     if not _state["leaving"]:
         _state["interrupted"] = True
+        _came["number"] = number
         raise KeyboardInterrupt
 
 
@@ -45,7 +47,10 @@ def _swallowed(told: UnraisableHookArgs) -> None:
 
 def _interrupt_after_pause() -> None:
     time.sleep(_PAUSE)  # the finaliser has to end first
-    _thread.interrupt_main()
+    if hasattr(signal, "pthread_kill"):  # ends a system call that waits, too
+        signal.pthread_kill(_came["thread"], _came["number"])
+    else:  # Windows
+        _thread.interrupt_main()
 
 
 def begin() -> None:
@@ -54,6 +59,7 @@ def begin() -> None:
     Signals that whoever started the program had it ignore stay ignored.
     """
     _state.update(leaving=False, interrupted=False)
+    _came["thread"] = _thread.get_ident()  # handlers run in the main thread, which this is
     sys.unraisablehook = _swallowed
     for number in _NUMBERS:
         if signal.getsignal(number) != signal.SIG_IGN:
