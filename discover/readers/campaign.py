@@ -135,7 +135,7 @@ def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Find
     if system is not None and not any(system.input in r.inputs for r in records):
         text = f"[system] takes {system.input} as its input, but no record has that column"
         findings.append(Finding("warning", text))
-    findings.extend(implausible(records, device, rig, assumed=read.assumed))
+    findings.extend(implausible(records, device, rig, units=read.read_units))
     return Campaign(
         title=title,
         records=tuple(records),
@@ -160,7 +160,7 @@ class _Reading:
         self.digest = digest
         self.records: list[Record] = []
         self.findings: list[Finding] = []
-        self.assumed: set[str] = set()
+        self.read_units: list[Mapping[str, str | None]] = []
         self.errors: list[InputError] = []
         self.hashed: set[str] = set()
         self.book: Book | None = None
@@ -183,14 +183,14 @@ class _Reading:
             except InputError as error:
                 self.errors.append(error)
                 continue
-            record, findings, assumed = found
+            record, findings, own_units = found
             if any(record.file == other.file for other in self.records):
                 twice = {"expected": "listed once", "found": "it again", "where": record.file}
                 self.errors.append(InputError("record", **twice))
                 continue
             self.records.append(record)
             self.findings.extend(findings)
-            self.assumed.update(assumed)
+            self.read_units.append(own_units)
 
     def finish(self, count: int) -> None:
         """Raise what is wrong: alone as it is, else one line each."""

@@ -36,12 +36,17 @@ class Columns:
     """(N,) by quantity, those that the file has."""
     raw_time: Array
     """(N,) in the file's unit: its decimals tell rounding from jitter."""
-    assumed: tuple[str, ...]
-    """Quantities whose unit is nowhere stated and taken as SI."""
+    units: Mapping[str, str | None]
+    """By quantity as stated, of the columns that were read; None where it is taken as SI."""
     unused: Mapping[str, str]
     """Headers that are nearly a quantity's name but not read, with that name."""
     step: float | None = None
     """s, the sampling interval that the times were made of; None where they were read."""
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """Quantities whose unit is nowhere stated and taken as SI."""
+        return tuple(quantity for quantity, unit in self.units.items() if unit is None)
 
 
 def split_header(header: str) -> tuple[str, str | None]:
@@ -133,15 +138,11 @@ def read_columns(
     for quantity, index in found.items():
         chosen[quantity] = _unit_of(source, index, quantity, units.get(quantity))
     raw = source.read(list(found.values()))
-    values, assumed = {}, []
+    values = {}
     for (quantity, index), column in zip(found.items(), raw, strict=True):
         _check_finite(source, index, column)
         unit = chosen[quantity]
-        if unit is None:
-            assumed.append(quantity)
-            values[quantity] = column
-        else:
-            values[quantity] = to_si(column, unit, QUANTITIES[quantity])
+        values[quantity] = column if unit is None else to_si(column, unit, QUANTITIES[quantity])
     made = None
     if "time" in found:
         raw_time = raw[list(found).index("time")]
@@ -150,7 +151,7 @@ def read_columns(
         count = np.arange(values["force"].size, dtype=np.float64)
         raw_time = made * count + (source.start if step is None else 0.0)
         values["time"] = raw_time
-    return Columns(values, raw_time, tuple(assumed), _unused(source, found), made)
+    return Columns(values, raw_time, chosen, _unused(source, found), made)
 
 
 def _unused(source: Source, found: Mapping[str, int]) -> dict[str, str]:

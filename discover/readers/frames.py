@@ -59,19 +59,19 @@ def campaign_from_frames(
     digest = hashlib.sha256(json.dumps([names, stated, step], sort_keys=True).encode())
     records: list[Record] = []
     findings: list[Finding] = []
-    assumed: set[str] = set()
+    read: list[Mapping[str, str | None]] = []
     for name, frame in frames.items():
         headers, arrays, own = _columns(frame, str(name))
         for header, array in zip(headers, arrays, strict=True):
             digest.update(f"{name}\0{header}\0{array.size}\0".encode() + array.tobytes())
         source = Source(str(name), headers, _reader(arrays, headers, str(name)), units=own)
         entry = Entry(str(name), held_out=name in held_out, step=step)
-        record, found, guessed = read_record(source, entry, names=names, units=stated)
+        record, found, own_units = read_record(source, entry, names=names, units=stated)
         records.append(record)
         findings.extend(found)
-        assumed.update(guessed)
+        read.append(own_units)
     described = _device(device)
-    findings.extend(implausible(records, described, None, assumed=assumed))
+    findings.extend(implausible(records, described, None, units=read))
     return Campaign(
         title=title or "records in memory",
         records=tuple(records),

@@ -30,7 +30,7 @@ def read_record_of_any_length(
     names: Mapping[str, str],
     units: Mapping[str, str],
     part: str = "",
-) -> tuple[Record, list[Finding], tuple[str, ...]]:
+) -> tuple[Record, list[Finding], Mapping[str, str | None]]:
     """Read one record, a long sine test in pieces; else as `read_record`, whose arguments it has.
 
     A file whose pieces can be read and that has more than `LONG` samples is judged by its first
@@ -45,16 +45,16 @@ def read_record_of_any_length(
     rows = source.rows or 0
     if rows <= LONG:
         return whole(source, entry)
-    record, findings, assumed = whole(first_part(source), entry)
+    record, findings, read = whole(first_part(source), entry)
     file = record.file
     sine = record.displacement is not None and classify(record).kind == "sine"
     if not sine:
-        record, findings, assumed = whole(source, entry)
+        record, findings, read = whole(source, entry)
         text = (
             f"it has {rows:,} samples and its first {FIRST:,} are no sine test: it is held whole,"
             f" which takes about {_MEMORY * rows / 1e9:.2g} GB; [[records]] range reads less of it"
         )
-        return record, [*findings, Finding("warning", text, file)], assumed
+        return record, [*findings, Finding("warning", text, file)], read
     pieces = partial(
         _pieces, source, names=names, units=units, step=entry.step, where=file
     )
@@ -63,7 +63,7 @@ def read_record_of_any_length(
         f" them; its kind, what is odd in it, its noise and its pictures of the first {FIRST:,}"
     )
     findings.append(Finding("note", text, file))
-    return replace(record, long=LongRecord(rows, pieces)), findings, assumed
+    return replace(record, long=LongRecord(rows, pieces)), findings, read
 
 
 def first_part(source: Source) -> Source:

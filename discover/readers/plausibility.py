@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from discover.readers.columns import QUANTITIES
 from discover.readers.fastest_motion import fastest_motion
+from discover.readers.units import SI_UNITS, to_si
 from discover.record_checks.apparent import apparent
 from discover.record_kind import classify
 from discover.records import Finding, Record, RigLimits
@@ -34,12 +36,8 @@ class Sizes:
 
 @dataclass(frozen=True)
 class Slip:
-    """A unit that may have been written for another."""
+    """A column read in another unit than its values are in."""
 
-    written: str
-    """As read."""
-    meant: str
-    """As it would have to be read."""
     quantity: str
     """Its column."""
     factor: float
@@ -47,16 +45,22 @@ class Slip:
 
 
 _SLIPS = (
-    Slip("m", "mm", "displacement", 1e-3),
-    Slip("m", "µm", "displacement", 1e-6),
-    Slip("mm", "m", "displacement", 1e3),
-    Slip("s", "ms", "time", 1e-3),
-    Slip("s", "µs", "time", 1e-6),
-    Slip("ms", "s", "time", 1e3),
-    Slip("N", "kN", "force", 1e3),
-    Slip("N", "mN", "force", 1e-3),
-    Slip("kN", "N", "force", 1e-3),
+    Slip("displacement", 1e-3),
+    Slip("displacement", 1e-6),
+    Slip("displacement", 1e3),
+    Slip("time", 1e-3),
+    Slip("time", 1e-6),
+    Slip("time", 1e-9),
+    Slip("time", 1e3),
+    Slip("force", 1e3),
+    Slip("force", 1e-3),
 )
+_USUAL = {
+    "displacement": ("µm", "mm", "m"),
+    "time": ("ns", "µs", "ms", "s"),
+    "force": ("mN", "N", "kN", "MN"),
+}
+"""Units that such columns are in."""
 # What tests in laboratories are like, of valves and seals as of earthquake dampers.
 _AMPLITUDE = (1e-6, 2.0)  # m
 _ASSUMED_AMPLITUDE = (1e-6, 0.3)  # m, where nobody wrote the unit
@@ -73,7 +77,7 @@ def implausible(
     device: Device | None,
     rig: RigLimits | None,
     *,
-    assumed: Collection[str] = (),
+    units: Sequence[Mapping[str, str | None]] = (),
 ) -> list[Finding]:
     """Return a warning where the sizes of a whole campaign make no sense, with the likely unit.
 
@@ -89,32 +93,51 @@ def implausible(
         Whose inertance the records' apparent one is compared with.
     rig : RigLimits or None
         What the rig can do.
-    assumed : collection of str
-        Quantities whose unit is nowhere stated.
+    units : sequence of mapping
+        Of each record, the units by quantity as read; None where none is stated.
     """
     sizes = _sizes(records, inertial=device is not None)
     if sizes is None:
         return []
+    assumed = {q for read in units for q, unit in read.items() if unit is None}
     wrong = list(_wrong(sizes, device, rig, assumed))
     if not wrong:
         return []
     mending = [s for s in _SLIPS if not list(_wrong(_mended(sizes, s), device, rig, assumed))]
     text = "all records: " if len(records) > 1 else ""
-    text += "; ".join(wrong) + ": " + _advice(mending)
+    text += "; ".join(wrong) + ": " + _advice(mending, units)
     alone = records[0].file if len(records) == 1 else None
     return [Finding("warning", text, alone)]
 
 
-def _advice(mending: Sequence[Slip]) -> str:
+def _advice(mending: Sequence[Slip], units: Sequence[Mapping[str, str | None]]) -> str:
     unstated = "is a unit wrong? Check the [units] and the headers"
     if not mending:
         return unstated
-    asked = [f"is {s.quantity} in {s.meant} where {s.written} was read" for s in _distinct(mending)]
+    asked = [_question(slip, units) for slip in _distinct(mending)]
     return ", or ".join(asked) + "? It would make sense"
 
 
+def _question(slip: Slip, units: Sequence[Mapping[str, str | None]]) -> str:
+    """Return what to ask: for the unit, where it is a usual one and was read alike throughout."""
+    kind = QUANTITIES[slip.quantity]
+    read = {u.get(slip.quantity) or SI_UNITS[kind] for u in units}
+    if len(read) == 1:
+        (written,) = read
+        size = _size(written, kind) * slip.factor
+        for meant in _USUAL[slip.quantity]:
+            if math.isclose(size, _size(meant, kind)):
+                return f"is {slip.quantity} in {meant} where {written} was read"
+    large, times = ("large", 1.0 / slip.factor) if slip.factor < 1.0 else ("small", slip.factor)
+    return f"are the values of {slip.quantity} {times:.0f} times too {large}"
+
+
+def _size(unit: str, kind: str) -> float:
+    return float(to_si(np.ones(1), unit, kind)[0])
+
+
 def _distinct(slips: Iterable[Slip]) -> list[Slip]:
-    """Return one slip for each column and factor: m for mm is the same mistake as mm for µm."""
+    """Return the first slip of each column: the least that makes sense."""
     met: dict[str, Slip] = {}
     for slip in slips:
         met.setdefault(slip.quantity, slip)

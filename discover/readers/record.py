@@ -36,7 +36,7 @@ def read_record(
     names: Mapping[str, str],
     units: Mapping[str, str],
     part: str = "",
-) -> tuple[Record, list[Finding], tuple[str, ...]]:
+) -> tuple[Record, list[Finding], Mapping[str, str | None]]:
     """Read one record, judge it, and say what had to be mended.
 
     Parameters
@@ -54,8 +54,8 @@ def read_record(
     -------
     Record
     list of Finding
-    tuple of str
-        Quantities whose unit is nowhere stated.
+    mapping
+        Units by quantity, as read; None where none is stated.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def read_record(
         if not resampled:
             record = record.sampled(time, measured)
     findings.extend(check_labels(record))
-    return record, findings, columns.assumed
+    return record, findings, columns.units
 
 
 def _header_findings(columns: Columns, file: str) -> list[Finding]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from discover.readers import read_campaign
@@ -49,20 +50,28 @@ def test_what_makes_sense_is_not_warned_of(tmp_path: Path, head: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("scale", "asked"),
+    ("read", "scale", "asked"),
     [
-        ((1e3, 1.0, 1.0), "time in ms where s was read"),
-        ((1.0, 1e3, 1.0), "displacement in mm where m was read"),
-        ((1.0, 1e-3, 1.0), "displacement in m where mm was read"),
-        ((1.0, 1.0, 1e-3), "force in kN where N was read"),
-        ((1.0, 1.0, 1e3), "force in mN where N was read"),
-        ((1e-3, 1.0, 1.0), "time in s where ms was read"),
+        ("s, m, N", (1e3, 1.0, 1.0), "is time in ms where s was read"),
+        ("s, m, N", (1e9, 1.0, 1.0), "is time in ns where s was read"),
+        ("ms, m, N", (1.0, 1.0, 1.0), "is time in s where ms was read"),
+        ("s, m, N", (1e-3, 1.0, 1.0), "are the values of time 1000 times too small"),
+        ("s, m, N", (1.0, 1e3, 1.0), "is displacement in mm where m was read"),
+        ("s, mm, N", (1.0, 1.0, 1.0), "is displacement in m where mm was read"),
+        ("s, mm, N", (1.0, 1e6, 1.0), "is displacement in µm where mm was read"),
+        ("s, m, N", (1.0, 1e-3, 1.0), "are the values of displacement 1000 times too small"),
+        ("s, m, N", (1.0, 1.0, 1e-3), "is force in kN where N was read"),
+        ("s, m, kN", (1.0, 1.0, 1.0), "is force in N where kN was read"),
+        ("s, m, 1e3 N", (1.0, 1.0, 1.0), "is force in N where 1e3 N was read"),
+        ("s, m, N", (1.0, 1.0, 1e3), "is force in mN where N was read"),
     ],
 )
 def test_a_slip_in_all_records_of_a_known_device(
-    tmp_path: Path, scale: tuple[float, float, float], asked: str
+    tmp_path: Path, read: str, scale: tuple[float, float, float], asked: str
 ) -> None:
-    (text,) = _told(_folder(tmp_path, head=DEVICE, scale=scale))
+    time, displacement, force = read.split(", ")
+    header = f"time [{time}],displacement [{displacement}],force [{force}]"
+    (text,) = _told(_folder(tmp_path, header=header, head=DEVICE, scale=scale))
     assert text.startswith("all records: ")
     assert asked in text
 
@@ -79,6 +88,18 @@ def test_millimetres_without_a_unit(tmp_path: Path) -> None:
     header = "time [s],displacement,force [N]"
     (text,) = _told(_folder(tmp_path, header=header, scale=(1.0, 1e3, 1.0)))
     assert "amplitude is 8 m: is displacement in mm where m was read? It would make" in text
+
+
+def test_nanoseconds_that_parquet_does_not_name(tmp_path: Path) -> None:
+    """What pandas writes of time stamps that were made whole numbers."""
+    speed = 2 * np.pi * 3.0
+    x = 0.008 * np.sin(speed * TIME)
+    stamps = pd.to_datetime(np.round(1e9 * TIME)).astype("datetime64[ns]").astype("int64")
+    columns = {"time": stamps, "displacement [m]": x, "force [N]": -370.0 * speed**2 * x}
+    pd.DataFrame(columns).to_parquet(tmp_path / "a.parquet")
+    (tmp_path / "campaign.toml").write_text('[[records]]\nfile = "a.parquet"\n')
+    (text,) = _told(tmp_path)
+    assert "is time in ns where s was read? It would make sense" in text
 
 
 def test_milliseconds_labelled_seconds_without_a_device(tmp_path: Path) -> None:
