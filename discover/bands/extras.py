@@ -18,12 +18,13 @@ from discover.bands.search import Banded, BandSearch, searched
 from discover.bands.variants import Grids, variants_of
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.climb import Place
-from discover.posterior.grow import Step, grown
+from discover.posterior.grow import grown
 from discover.posterior.left_out import is_needed, predicts_better
 from discover.posterior.model import Composite, Evaluator
 from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
 from discover.posterior.spread import is_told
+from discover.posterior.step import Step
 from discover.posterior.structures import Variant
 from discover.rows import RecordRows, force_rows
 from discover.rows.columns import Behind
@@ -99,6 +100,8 @@ class Found:
     """What the device has besides its structure."""
     last: Step | None
     """What might have joined and did not; None where nothing but noise was left."""
+    rivals: tuple[Found, ...] = ()
+    """Where other ways ended, with other terms joined, where more than noise is left."""
 
     @property
     def value(self) -> float:
@@ -134,7 +137,7 @@ def found(device: Device) -> Found:
     now = _searched(device, (), None)
     if now.quiet:
         return now
-    best = now
+    best, ends = now, list[Found]()
     starts = {b.bands: b for b in (now.banded, now.fewer[0])}
     others = [_other_family(now)] if now.banded.bands == 1 else []  # bands may differ in family
     for start in (*starts.values(), *others):
@@ -142,6 +145,7 @@ def found(device: Device) -> Found:
         for _ in range(MOST):
             more = _with_one_more(way)
             if isinstance(more, Step):
+                ends.append(replace(way, last=more))
                 if way is best or (way.joined == best.joined):
                     best = replace(best, last=more)
                 break
@@ -150,9 +154,12 @@ def found(device: Device) -> Found:
             way = more
             if more.quiet:
                 break
+        else:
+            ends.append(way)
         if best.quiet:
-            break
-    return best
+            return best
+    names = {j.id for j in best.joined}
+    return replace(best, rivals=tuple(e for e in ends if {j.id for j in e.joined} != names))
 
 
 def _other_family(now: Found) -> Banded:
@@ -242,9 +249,7 @@ def _joined(way: Found, step: Step) -> Found:
     if best.assessed is None:
         raise ValueError("what joins is fitted")
     terms = best.assessed.model.terms
-    new = Joined(
-        tuple(terms[i].fitted for i in best.places), best.value - best.assessed.value, step
-    )
+    new = Joined(tuple(terms[i].fitted for i in best.places), best.log_prior, step)
     fitted = {t.fitted.id: t.fitted for t in terms}
     old = [
         replace(j, terms=tuple(fitted.get(t.id, t) for t in j.terms)) if len(j.terms) == 1 else j

@@ -7,9 +7,11 @@ thing: together they say as much as the members of a cluster do.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from discover.bands.extras import Found
@@ -17,6 +19,8 @@ from discover.bands.search import Banded
 from discover.posterior.own_share import own_share
 from discover.posterior.spread import idle
 from models.checks import Array
+
+Mask = NDArray[np.bool_]
 
 
 def told(found: Found) -> Found:
@@ -29,24 +33,56 @@ def told(found: Found) -> Found:
     if found.quiet:
         return found
     power = own_share(found.assessed.predicting)
+    first, *others = (_at_power(way, power) for way in (found, *found.rivals))
+    alike = [way for way in others if way.banded.bands == first.banded.bands == 1]
+    return _mixed([first, *alike])
+
+
+def _at_power(found: Found, power: float) -> Found:
+    """Return the answer with structures, and numbers of bands, weighed at a power."""
     if found.device.bands is None:
-        values = [_at_power(found, b, power) for b in found.fewer]
+        values = [_value_at_power(found, b, power) for b in found.fewer]
         found = replace(found, banded=found.fewer[int(np.argmax(values))])
     found = _without_idle(found)
     banded = found.banded
     _, _, answer = found.search.one(
         banded.place, banded.shares, np.array(banded.variants), power=power
     )
-    cores = np.array([v.core for v in found.variants])
     by_variant = banded.by_variant.copy()
-    for core in dict.fromkeys(cores):
-        own = cores == core
+    for own in _cores(found).values():
         possible = np.where(np.isfinite(by_variant[:, own]), answer.by_variant[0][:, own], -np.inf)
         by_variant[:, own] += _total(possible) - _total(by_variant[:, own])
     return _with_values(found, by_variant)
 
 
-def _at_power(found: Found, banded: Banded, power: float) -> float:
+def _mixed(ways: Sequence[Found]) -> Found:
+    """Return the way that holds the most probable structure, its structures weighed over all ways.
+
+    What has joined besides is no surer than the structure: two structures, each with what helps it
+    most, may be as probable as each other.
+    """
+    cores = _cores(ways[0])
+    prior = np.array([sum(j.log_prior for j in way.joined) for way in ways])
+    weight = {
+        core: np.array([logsumexp(way.banded.by_variant[0, own]) for way in ways]) + prior
+        for core, own in cores.items()
+    }
+    best = max(cores, key=lambda core: logsumexp(weight[core]))
+    chosen = int(np.argmax(weight[best]))
+    by_variant = ways[chosen].banded.by_variant.copy()
+    for core, own in cores.items():
+        if np.isfinite(weight[core][chosen]):
+            by_variant[0, own] += logsumexp(weight[core]) - weight[core][chosen]
+    return _with_values(ways[chosen], by_variant)
+
+
+def _cores(found: Found) -> dict[str, Mask]:
+    """Return which variants (V,) have each core."""
+    cores = np.array([v.core for v in found.variants])
+    return {str(core): cores == core for core in dict.fromkeys(cores)}
+
+
+def _value_at_power(found: Found, banded: Banded, power: float) -> float:
     """Return the log evidence, nats, of a number of bands, its likelihood taken to a power."""
     start = np.array(banded.variants)
     value, _, _ = found.search.one(banded.place, banded.shares, start, others=False, power=power)

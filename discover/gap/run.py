@@ -18,9 +18,9 @@ from discover.gap.verdict import CLOSED
 from discover.gap.where import places, surface, where_in_words
 from discover.motion_fit import observe_all
 from discover.named_model import FROM_GEOMETRY, named_model
-from discover.posterior.grow import Step
 from discover.posterior.model import Number
 from discover.posterior.spread import Spread, spread_of
+from discover.posterior.step import Step
 from discover.record_checks import data_errors, differing_records
 from discover.records import Campaign, checked_campaign
 from discover.rows import Unexplained, alike_percent, force_rows, noise_percent, unexplained

@@ -9,14 +9,16 @@ import numpy as np
 
 from discover.gap.baseline import Baseline, in_few_curves
 from discover.posterior.assess import Assessed
-from discover.posterior.grow import Candidate, Step, grown, ordered
+from discover.posterior.grow import grown
 from discover.posterior.left_out import is_less, is_needed, left_out
 from discover.posterior.model import Composite
+from discover.posterior.step import Candidate, Step, ordered
 from discover.rows import Accuracy, accuracy, pooled_percent
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
 MOST_ROUNDS = 6  # effects that one search names
+_POSSIBLE = 0.01  # probability, from which a mended model is made of a candidate
 
 
 @dataclass(frozen=True)
@@ -208,11 +210,17 @@ class Mended:
         return self._stages[candidate.id]
 
     def compared(self, step: Step) -> Step:
-        """Return a step that leaves more than noise, weighed by what the mended models predict."""
-        return ordered(
-            [c if c.left is None else replace(c, left=self.by(c).errors) for c in step.candidates],
-            step.seed,
-        )
+        """Return a step that leaves more than noise, weighed by what the mended models predict.
+
+        What is out of the question before stays so.
+        """
+        possible = {i for i, p in step.probabilities.items() if not i or p >= _POSSIBLE}
+        return ordered(replace(step, candidates=tuple(
+            c if c.left is None
+            else replace(c, left=self.by(c).errors) if c.id in possible
+            else replace(c, left=None)
+            for c in step.candidates
+        )))
 
 
 def _accepted(mended: Mended, grown_step: Step) -> tuple[Step, tuple[str, ...]]:

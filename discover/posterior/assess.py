@@ -98,11 +98,6 @@ class Assessor:
     seed: int = 0
     """Of what is drawn."""
 
-    @property
-    def may_leave_out(self) -> bool:
-        """True where there are several records, or several parts of one."""
-        return len(self.space.sheet.units) > 1
-
     @cached_property
     def coarse(self) -> Evaluator:
         """Evaluator of what may join a model, where a quarter of a cycle's points is enough."""

@@ -1,24 +1,23 @@
 """One more term: which one, if any, makes the records more probable.
 
 Where a term leaves but noise, evidence decides. Where none does, no model is right, and evidence
-is sure of whichever is a little less wrong. Then the terms that make the records more probable
-are compared by how well each record is predicted from the others.
+is sure of whichever is a little less wrong. Then terms are compared by how well each record is
+predicted from the others.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 
 import numpy as np
-from scipy.special import logsumexp
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.catalogue import trials_of
-from discover.posterior.left_out import left_out, predicts_best
+from discover.posterior.left_out import left_out
+from discover.posterior.own_share import own_lines
+from discover.posterior.step import Candidate, Step, ordered
 from discover.posterior.weigh import Gain, gains
-from models.checks import Array
 from models.constitutive import FittedTerm
 from models.terms import TERMS
 
@@ -29,71 +28,6 @@ _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already
 _NATS = 20.0  # less than that
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A term beside a model."""
-
-    id: str
-    """Of the term; "" for the model as it is."""
-    value: float
-    """Log evidence with the prior, nats."""
-    assessed: Assessed | None
-    """The model with it; None where it was weighed in a straight line only."""
-    count: int = 0
-    """Number of terms that were added."""
-    left: Array | None = None
-    """What it leaves of each record, predicted by the others; None where evidence decides."""
-
-    @property
-    def places(self) -> range:
-        """Places of its terms in the model with it: the last ones."""
-        count = 0 if self.assessed is None else len(self.assessed.model.terms)
-        return range(count - self.count, count)
-
-
-@dataclass(frozen=True)
-class Step:
-    """What may join a model, weighed."""
-
-    candidates: tuple[Candidate, ...]
-    """Most probable first; the model as it is among them."""
-    seed: int = 0
-    """Of the draws of records."""
-
-    @property
-    def best(self) -> Candidate:
-        """The most probable."""
-        return self.candidates[0]
-
-    def without(self, ids: Collection[str]) -> Step:
-        """Return the step without some candidates, refused as they do not predict."""
-        return ordered([c for c in self.candidates if c.id not in ids], self.seed)
-
-    @cached_property
-    def probabilities(self) -> dict[str, float]:
-        """Of every id, and of "" for the model as it is."""
-        return _probabilities(self.candidates, self.seed)
-
-
-def ordered(candidates: Sequence[Candidate], seed: int) -> Step:
-    """Return a step with the most probable first; the model as it is before its equals."""
-    known = _probabilities(candidates, seed)
-    order = sorted(candidates, key=lambda c: (-known[c.id], bool(c.id), -c.value))
-    return Step(tuple(order), seed)
-
-
-def _probabilities(candidates: Sequence[Candidate], seed: int) -> dict[str, float]:
-    """Return the probability of each by evidence, or by how well it predicts."""
-    weighed = {c.id: c.left for c in candidates if c.left is not None}
-    if weighed:
-        shares = predicts_best(list(weighed.values()), seed)
-        known = {name: float(p) for name, p in zip(weighed, shares, strict=True)}
-        return {c.id: known.get(c.id, 0.0) for c in candidates}
-    values = np.array([c.value for c in candidates])
-    shares = np.exp(values - logsumexp(values))
-    return {c.id: float(p) for c, p in zip(candidates, shares, strict=True)}
 
 
 def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
@@ -117,17 +51,21 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
         found += _tried(assessor, now, chosen, len(ids))
-    if not any(c.assessed.quiet for c in found if c.assessed):
-        found = [_predicting(c) if not c.id or c.value > now.value else c for c in found]
-    return ordered(found, assessor.seed)
+    if any(c.assessed.quiet for c in found if c.assessed):
+        return ordered(Step(tuple(found), assessor.seed))
+    weighed = [_predicting(c) if c.value > now.value - _NATS else c for c in found]
+    return ordered(Step(tuple(weighed), assessor.seed, own_lines(now.predicting)))
 
 
 def _predicting(candidate: Candidate) -> Candidate:
-    """Return a candidate with what it leaves of records left out, where there are enough."""
-    assessed = candidate.assessed
-    if assessed is None or not assessed.assessor.may_leave_out:
+    """Return a candidate with what it leaves of records that are predicted by the others.
+
+    Of a record that can't be parted, what it leaves there itself.
+    """
+    if candidate.assessed is None:
         return candidate
-    return replace(candidate, left=left_out(assessed.predicting)[1])
+    fitted, predicted = left_out(candidate.assessed.predicting)
+    return replace(candidate, left=predicted if predicted.size > 1 else fitted)
 
 
 def _simulated(identifier: str) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.special import softmax
 
 from discover.posterior.assess import Assessed
 from discover.posterior.evidence import root_of
@@ -12,6 +13,7 @@ from discover.posterior.sheet import Sheet
 from models.checks import Array, Indices
 
 _DRAWS = 4000  # of records' weights
+_LEAST = 1e-12  # of a record's power, that a model leaves
 _NOTHING = 1e-12  # of a column's energy: rounding of a sum less one of its parts
 
 
@@ -74,12 +76,7 @@ def _beside(gram: Array, spread: Array, free: Indices, values: Array) -> Array:
 
 
 def predicts_better(was: Assessed, now: Assessed) -> bool:
-    """Tell whether a model predicts records that are left out better than another one.
-
-    A lone part can't tell.
-    """
-    if not was.assessor.may_leave_out:
-        return True
+    """Tell whether a model predicts records that are left out better than another one."""
     before, after = (left_out(a.predicting)[1] for a in (was, now))
     return is_less(after, before)
 
@@ -95,30 +92,39 @@ def is_needed(without: Assessed, with_it: Assessed) -> bool:
 
 
 def is_less(now: Array, was: Array) -> bool:
-    """Tell whether errors (records,) are less than others, by the standard error of the mean."""
+    """Tell whether errors (N,) are less than others, by the standard error of the mean.
+
+    A lone one can't tell, and counts as less.
+    """
     gained = was - now
+    if gained.size < 2:
+        return True
     return bool(np.mean(gained) > np.std(gained, ddof=1) / np.sqrt(gained.size))
 
 
-def predicts_best(errors: Sequence[Array], seed: int) -> Array:
-    """Return the probability (M,) that each model predicts further records best.
+def predicts_best(errors: Sequence[Array], log_prior: Array, lines: float, seed: int) -> Array:
+    """Return the probability (M,) of each model by how well it predicts records.
 
-    Over weights of the records drawn anew (Bayesian bootstrap: Rubin, Annals of Statistics 9,
-    1981), the share of draws in which it predicts those left out with the least error. One record
-    more than there are, which any model may predict best, keeps few records from being sure.
+    The likelihood of a record that is left out, under an error of the size that the model leaves in
+    it, stands for the evidence; it is averaged over weights of the records drawn anew, so that few
+    records are not sure (pseudo-BMA+: Yao, Vehtari, Simpson and Gelman, *Bayesian Analysis* 13,
+    2018, 917-1007).
 
     Parameters
     ----------
-    errors : sequence of ndarray, shape (records,)
+    errors : sequence of ndarray, shape (N,)
         What each model leaves of the records, from `left_out`.
+    log_prior : ndarray, shape (M,)
+        Nats.
+    lines : float
+        Of a record, that say something of their own.
     seed : int
         Of the draws.
     """
-    left = np.array(errors)
-    count, records = left.shape
-    weights = np.random.default_rng(seed).dirichlet(np.ones(records), _DRAWS)
-    best = np.bincount((weights @ left.T).argmin(axis=1), minlength=count) / _DRAWS
-    return np.asarray((records * best + 1.0 / count) / (records + 1.0))
+    score = -0.5 * lines * np.log(np.maximum(np.array(errors), _LEAST))
+    records = score.shape[1]
+    weights = records * np.random.default_rng(seed).dirichlet(np.ones(records), _DRAWS)
+    return np.asarray(softmax(weights @ score.T + log_prior, axis=1).mean(axis=0))
 
 
 def _relative(sheet: Sheet, units: Indices, left: Array) -> float:

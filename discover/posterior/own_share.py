@@ -24,3 +24,9 @@ def own_share(assessed: Assessed) -> float:
     common = max(1.0 - lines / max(float(whole.sum()), 1e-300), 0.0)
     shown = whole**2 / np.maximum(np.sum(left**2, axis=1), 1e-300)
     return 1.0 / (1.0 + (float(np.mean(shown)) - 1.0) * common)
+
+
+def own_lines(assessed: Assessed) -> float:
+    """Return the number of a record's lines that say something of their own, in the mean."""
+    lines = float(np.mean([r.size.size for r in assessed.space.sheet.rows]))
+    return own_share(assessed) * lines

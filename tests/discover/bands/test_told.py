@@ -46,3 +46,23 @@ def test_few_records_that_no_law_holds_for_make_no_structure_sure():
     assert after.banded.bands == 1
     assert max(core_probabilities(before, 0).values()) > 0.95
     assert max(core_probabilities(after, 0).values()) < 0.8
+
+
+def offset(amplitude, omega, theta):
+    """A force that saturates beside a constant one."""
+    return yielding(amplitude, omega, theta) + 90.0
+
+
+def test_structures_are_weighed_over_all_that_may_be_beside_them():
+    records = campaign(offset, frequencies=(0.3, 1.0), amplitudes=(0.01, 0.02), noise=0.002)
+    device = replace(prepare(records, StudyOptions()).device, bands=1)
+    one, other = (found(replace(device, extras=e)) for e in (("force-offset",), ()))
+    assert [j.id for j in one.joined] == ["force-offset"]
+    assert [j.id for j in told(replace(other, rivals=(one,))).joined] == ["force-offset"]
+    own, others, mixed = (
+        core_probabilities(told(way), 0)
+        for way in (one, other, replace(one, rivals=(other,)))
+    )
+    for core, probability in mixed.items():
+        between = sorted((own.get(core, 0.0), others.get(core, 0.0)))
+        assert between[0] - 0.03 < probability < between[1] + 0.03

@@ -10,20 +10,41 @@ from discover.study.prepare import prepare
 from models.constitutive import FittedTerm, ForceModel
 from tests.discover.exact import campaign
 
+EQUAL = np.zeros(2)
+
 
 def test_a_model_that_is_better_in_every_record_is_surer_of_more_records():
     few, many = np.full((2, 2), 1.0), np.full((2, 30), 1.0)
-    few[1] = many[1] = 2.0
-    assert predicts_best(few, 0)[0] == pytest.approx(5 / 6)
-    assert predicts_best(many, 0)[0] > 0.98
+    few[1] = many[1] = 1.5
+    assert 0.6 < predicts_best(few, EQUAL, 4.0, 0)[0] < 0.9
+    assert predicts_best(many, EQUAL, 4.0, 0)[0] > 0.98
+
+
+def test_a_model_that_is_better_by_a_hair_in_every_record_is_no_surer():
+    errors = np.full((2, 5), 0.02)
+    errors[1] *= 1.001
+    assert predicts_best(errors, EQUAL, 30.0, 0) == pytest.approx([0.5, 0.5], abs=0.03)
 
 
 def test_models_that_are_better_in_half_of_the_records_are_equally_probable():
     errors = np.array([[1.0, 2.0] * 10, [2.0, 1.0] * 10])
-    found = predicts_best(errors, 3)
+    found = predicts_best(errors, EQUAL, 3.0, 3)
     assert found == pytest.approx([0.5, 0.5], abs=0.05)
     assert found.sum() == pytest.approx(1.0)
-    np.testing.assert_array_equal(found, predicts_best(errors, 3))
+    np.testing.assert_array_equal(found, predicts_best(errors, EQUAL, 3.0, 3))
+
+
+def test_one_record_in_which_a_model_is_far_better_makes_it_less_sure_than_all_records_do():
+    once, always = np.full((2, 6), 1.0), np.full((2, 6), 1.0)
+    once[0, 0], always[0] = np.exp(-6.0), np.exp(-1.0)
+    one, every = (predicts_best(e, EQUAL, 2.0, 0)[0] for e in (once, always))
+    assert every > 0.98 > 0.95 > one
+
+
+def test_what_is_known_beforehand_counts():
+    errors = np.full((2, 4), 1.0)
+    found = predicts_best(errors, np.log([0.9, 0.1]), 5.0, 0)
+    assert found == pytest.approx([0.9, 0.1])
 
 
 def test_errors_are_less_by_more_than_their_standard_error_only():
@@ -31,6 +52,10 @@ def test_errors_are_less_by_more_than_their_standard_error_only():
     assert is_less(was - 0.1, was)
     assert not is_less(was, was)
     assert not is_less(was + [-0.5, 0.4, 0.4, -0.4], was)
+
+
+def test_a_lone_record_can_t_tell():
+    assert is_less(np.array([2.0]), np.array([1.0]))
 
 
 FREQUENCIES = (0.3, 0.7, 1.5)

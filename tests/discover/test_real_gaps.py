@@ -1,0 +1,64 @@
+"""What is missing on measured machines: what is known of them, and what would be wrong."""
+
+from pathlib import Path
+
+import pytest
+
+from discover.gap import close_gap
+from discover.readers import read_campaign
+
+FOLDER = Path(__file__).parents[3] / "shared" / "real-data"
+RIGID = "fit:inertia,viscous-damping,coulomb-friction"
+VISCOUS = "fit:viscous-damping"
+FRICTION = "fit:coulomb-friction"
+SENSORS = {"sensor-gain", "sensor-clipping", "sensor-drift"}
+
+pytestmark = [
+    pytest.mark.sweep,
+    pytest.mark.skipif(not FOLDER.is_dir(), reason="measured data not beside the checkout"),
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "baseline", "first", "wrong"),
+    [
+        ("inerter-cvt-r0", RIGID, "hysteresis", {"stiffness", "quadratic-damping", "cavitation"}),
+        ("mr-utfsm-0p5A", RIGID, "hysteresis", {"time-delay", "stiffness"}),
+        ("fsae-damper-hard", VISCOUS, "hysteresis", {"inertia", "thermal-drift"}),
+        ("fsae-damper-soft", VISCOUS, "force-offset", {"inertia", "stiffness", "thermal-drift"}),
+        ("emps", RIGID, "asymmetric-damping", {"fractional-derivative"}),
+        ("seal-oring-1bar", FRICTION, "force-offset", SENSORS),
+    ],
+)
+def test_what_helps_a_measured_machine_most_is_what_is_known_of_it(name, baseline, first, wrong):
+    gap = close_gap(read_campaign(FOLDER / name), baseline)
+    effects = [r.effect for r in gap.rounds]
+    assert effects[0] == first
+    assert not wrong & set(effects)
+
+
+@pytest.mark.parametrize(
+    ("name", "baseline", "wrong"),
+    [
+        ("inerter-cvt-steady", RIGID, {"stiffness", "cubic-stiffness", "stribeck-friction"}),
+        ("rack-pinion", RIGID, {"stribeck-friction"}),
+        pytest.param(
+            "seal-xring", FRICTION, SENSORS,
+            marks=pytest.mark.xfail(strict=True, reason="friction that pressure raises is a gain"),
+        ),
+    ],
+)  # fmt: skip
+def test_what_would_be_wrong_of_a_measured_machine_is_not_named(name, baseline, wrong):
+    gap = close_gap(read_campaign(FOLDER / name), baseline)
+    assert not wrong & {r.effect for r in gap.rounds}
+
+
+def test_a_damper_with_an_offset_of_each_record_is_met_to_its_bar():
+    gap = close_gap(read_campaign(FOLDER / "fsae-damper-soft"), VISCOUS)
+    assert [r.effect for r in gap.rounds] == ["force-offset", "coulomb-friction"]
+    assert gap.rounds[-1].gap[1] < 12.0
+
+
+def test_a_damper_with_hysteresis_is_predicted_in_a_record_that_was_not_fitted():
+    gap = close_gap(read_campaign(FOLDER / "fsae-damper-hard"), VISCOUS)
+    assert gap.rounds[-1].unseen[1] < 6.0
