@@ -58,9 +58,11 @@ class Comparison:
 
 
 def curve_given(
-    space: Space, sizes: Sizes, left: Array, curve: Part, scale: float
-) -> tuple[Array, Array]:
-    """Return the mean (K,) and covariance (K, K) of a curve's coefficients.
+    space: Space, sizes: Sizes, left: Array, curve: Part, scale: float, slopes: Array
+) -> tuple[Array, Array, Array]:
+    """Return the mean (K,) and covariance (K, K) of a curve's coefficients, the rest given.
+
+    And (K, P), how far the mean moves with each of the model's numbers.
 
     Parameters
     ----------
@@ -74,10 +76,13 @@ def curve_given(
         A term with a curve of its own.
     scale : float
         Of the curve.
+    slopes : ndarray, shape (U, P, R)
+        Of the model's numbers.
     """
     here = space.given(sizes)
     kept = here.kept(curve.columns, curve.spread)
-    across, _ = here.beside(kept, Further(left[:, None]))
+    across, _ = here.beside(kept, Further(np.concatenate([left[:, None], slopes], axis=1)))
     strength, axes = kept.axes
     covariance = (axes * (scale**2 / (1.0 + scale**2 * strength))) @ axes.T
-    return covariance @ across[:, 0], covariance
+    moved = covariance @ across
+    return moved[:, 0], covariance, -moved[:, 1:]

@@ -12,7 +12,7 @@ from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.covariance import Sizes
 from discover.posterior.local import fitted, local_of
 from discover.posterior.metric import Comparison, curve_given
-from discover.posterior.model import Composite
+from discover.posterior.model import Composite, Number
 from discover.posterior.own_share import own_share
 from discover.posterior.space import Part, Space
 from discover.regression.best_subset import best_subsets
@@ -22,6 +22,41 @@ from models.constitutive import FittedTerm
 _MOST = 3  # curves that a model is given
 _NOTHING = 1e-3  # of friction, below which a curve is left out
 _ENOUGH = 0.05  # of a row's noise, that these may leave of the whole curve
+
+
+@dataclass(frozen=True)
+class Fading:
+    """What friction's curve holds of terms that need it, which falls away from its reversal.
+
+    Their curves stand as differences from friction's own, whose coefficient is therefore what
+    slides and what falls away together.
+    """
+
+    numbers: tuple[Number, ...]
+    """P of the model."""
+    slope: Array
+    """(P,) how far what falls away moves with each."""
+    variance: float
+    """Of what falls away, these given."""
+    main: Number
+    """Friction's own coefficient."""
+
+    def deviations(self, numbers: Sequence[Number], covariance: Array) -> tuple[float, float]:
+        """Return the standard deviations of what slides and of what falls away.
+
+        Parameters
+        ----------
+        numbers : sequence of Number
+            Q of the model.
+        covariance : ndarray, shape (Q, Q)
+            Of these.
+        """
+        known = dict(zip(self.numbers, self.slope, strict=True))
+        falling = np.array([known.get(n, 0.0) for n in numbers])
+        sliding = np.array([float(n == self.main) for n in numbers]) - falling
+        first, second = (float(np.sqrt(self.variance + g @ covariance @ g))
+                         for g in (sliding, falling))  # fmt: skip
+        return first, second
 
 
 @dataclass(frozen=True)
@@ -42,6 +77,8 @@ class Reversal:
     """95 %."""
     differs: float
     """Standard deviation between records, over the friction."""
+    fading: Fading
+    """What falls away beside it."""
 
     @property
     def sliding(self) -> float:
@@ -106,9 +143,15 @@ def reversal_of(
     space = predicting.space
     main = predicting.model.terms[at[0]].fitted
     left = space.sheet.target - predicting.local.force
-    departing, _ = curve_given(
-        space, predicting.place.sizes(space.own_unit), left, own, predicting.judged.scale
-    )
+    departing, covariance, leaning = curve_given(
+        space, predicting.place.sizes(space.own_unit), left, own, predicting.judged.scale,
+        predicting.local.slopes,
+    )  # fmt: skip
+    falls = np.array([t.id != curve.id for t in own.terms])
+    fading = Fading(
+        predicting.local.numbers, leaning[falls].sum(axis=0),
+        float(covariance[np.ix_(falls, falls)].sum()), Number(at[0], None),
+    )  # fmt: skip
     one = FittedTerm(main.id, 1.0, main.shape)
     plain = space.sheet.stack([space.columns_of(r, [one]) for r in space.sheet.rows])[:, 0]
     columns = space.columns[:, curve.columns]
@@ -125,7 +168,7 @@ def reversal_of(
     sizes = assessed.place.sizes(space.own_unit)
     power = 1.0 if assessed.quiet else own_share(predicting)
     follows, sure, size, interval = _turning(space, sizes, without, whole, curve, power)
-    found = Reversal(curve.id, terms, follows, sure, size, interval, 0.0)
+    found = Reversal(curve.id, terms, follows, sure, size, interval, 0.0, fading)
     return replace(found, differs=sizes.friction / found.sliding) if found.sliding > 0.0 else found
 
 

@@ -13,7 +13,7 @@ from discover.posterior.local import judged
 from discover.posterior.model import Composite, Number
 from models.checks import Array
 
-_SURE = 1.96  # standard deviations, at which 95 % are of one sign
+SURE = 1.96  # standard deviations, at which 95 % are of one sign
 _LEAST = 0.01  # of the posterior, from which sizes count
 
 
@@ -35,7 +35,7 @@ class Spread:
 
     def interval(self, place: int, low: float, high: float) -> tuple[float, float]:
         """Return the 95 % interval of a number that lies between bounds."""
-        half = _SURE * float(self.deviation[place])
+        half = SURE * float(self.deviation[place])
         middle = float(self.mean[place])
         return float(np.clip(middle - half, low, high)), float(np.clip(middle + half, low, high))
 
@@ -79,7 +79,7 @@ def idle(predicting: Assessed) -> list[int]:
     signed = np.where(local.sign == 0.0, np.abs(solved.mean), local.sign * solved.mean)
     found = {
         n.term: float(s) for n, s in zip(local.numbers, signed / wide, strict=True)
-        if n.shape is None and s <= _SURE
+        if n.shape is None and s <= SURE
     }
     return sorted(found, key=lambda place: found[place])
 
@@ -92,4 +92,4 @@ def is_told(assessed: Assessed, terms: Collection[int]) -> bool:
     """
     spread = spread_of(assessed, assessed.predicting.model)
     own = [i for i, n in enumerate(spread.numbers) if n.term in terms and n.shape is None]
-    return bool(np.any(np.abs(spread.mean[own]) > _SURE * spread.deviation[own]))
+    return bool(np.any(np.abs(spread.mean[own]) > SURE * spread.deviation[own]))

@@ -11,7 +11,7 @@ from discover.bands.extras import Found
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.model import Composite, Number
 from discover.posterior.reversal import Reversal, with_few_curves
-from discover.posterior.spread import Spread, spread_of
+from discover.posterior.spread import SURE, Spread, spread_of
 from discover.study.mixture import Normal, interval_of, normals
 from discover.study.prepare import Prepared
 from discover.study.result import Interval, TermEstimate
@@ -75,7 +75,7 @@ def estimated(prepared: Prepared, found: Found) -> Estimates:
             continue  # the records are best predicted without friction
         whole = reversal is not None and placed.fitted.id == prepared.device.friction.id
         if whole and reversal is not None:
-            own = _friction(reversal, model, spread, place)
+            own = _friction(reversal, spread)
         else:
             own = [_estimate(model, spread, place)]
         for band, terms in enumerate(by_band):
@@ -134,22 +134,18 @@ def _place(spread: Spread, number: Number) -> int | None:
     return spread.numbers.index(number) if number in spread.numbers else None
 
 
-def _friction(
-    reversal: Reversal, model: Composite, spread: Spread, place: int
-) -> Sequence[TermEstimate]:
-    """Return the few curves that make friction; how surely their sum is known, they share."""
-    whole = _estimate(model, spread, place)
-    total = reversal.sliding or 1.0
+def _friction(reversal: Reversal, spread: Spread) -> Sequence[TermEstimate]:
+    """Return the few curves that make friction.
+
+    How surely is known what slides, the curves of friction itself share; what falls away, others.
+    """
+    surely = reversal.fading.deviations(spread.numbers, spread.covariance)
     result = []
     for t in reversal.terms:
-        share = t.coefficient / total
-        low, high = (share * v for v in whole.interval)
-        middle = share * whole.fitted.coefficient
-        half = max(high - middle, middle - low)
-        result.append(
-            TermEstimate(
-                FittedTerm(t.id, t.coefficient, t.shape), abs(share) * whole.std_error,
-                (max(t.coefficient - half, 0.0), t.coefficient + half), {},
-            )
-        )
+        alike = [o for o in reversal.terms if (o.id == reversal.name) == (t.id == reversal.name)]
+        share = t.coefficient / (sum(o.coefficient for o in alike) or 1.0)
+        error = abs(share) * surely[int(t.id != reversal.name)]
+        half = SURE * error
+        ends = (max(t.coefficient - half, 0.0), t.coefficient + half)
+        result.append(TermEstimate(t, error, ends, {}))
     return result

@@ -44,6 +44,9 @@ def test_laminar_records_give_the_integer_family_without_a_boundary():
     assert terms(band)["inertia"].fitted.coefficient == pytest.approx(370.38, rel=0.01)
     inside = terms(band)["inertia"].interval
     assert inside[0] < 370.38 < inside[1]
+    friction = [t.interval for t in band.terms if t.fitted.id == "coulomb-friction"]
+    least, most = (sum(i[end] for i in friction) for end in (0, 1))
+    assert 396.0 < least < 400.0 < most < 404.0  # sliding, whatever falls away beside it
     assert study.held_out_relative_error_percent == pytest.approx(2.0, abs=0.1)
 
 

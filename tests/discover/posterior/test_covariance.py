@@ -111,10 +111,10 @@ def test_a_curve_that_is_marginalised_is_a_part_of_the_covariance(problem):
 
 
 def test_the_curve_s_coefficients_are_those_of_a_ridge(problem):
-    space, curve, _ = problem
+    space, curve, at = problem
     part, sizes = departures(curve, ()), SIZES["loud"]
-    left = space.sheet.target
-    mean, covariance = curve_given(space, sizes, left, part, part.scales[0])
+    left, slopes = space.sheet.target, space.columns[:, at]
+    mean, covariance, moved = curve_given(space, sizes, left, part, part.scales[0], slopes)
     bank = flat(space.columns[:, part.columns])
     weighted = np.linalg.solve(dense(space, sizes), bank)
     precision = bank.T @ weighted + np.diag((part.scales[0] * part.spread) ** -2)
@@ -123,6 +123,9 @@ def test_the_curve_s_coefficients_are_those_of_a_ridge(problem):
     np.testing.assert_allclose(covariance / scale**2, expected / scale**2, atol=1e-7)
     wanted = np.linalg.solve(precision, weighted.T @ left.ravel())
     np.testing.assert_allclose(mean / scale, wanted / scale, atol=1e-5)
+    size = space.scale(at) / scale
+    wanted = -np.linalg.solve(precision, weighted.T @ flat(slopes))
+    np.testing.assert_allclose(moved * size, wanted * size, atol=1e-5)
 
 
 def windows(seed=0):
