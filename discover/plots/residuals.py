@@ -74,7 +74,8 @@ def residual(record: ShownRecord, *, name: str) -> str | None:
         cycle.axhline(0.0, color=MUTED, linewidth=0.8)
         if first.lag.size:
             limit = first.correlation_limit
-            white.axhspan(-limit, limit, color=MUTED, alpha=0.18, linewidth=0.0)
+            band = white.axhspan(-limit, limit, color=MUTED, alpha=0.28, linewidth=0.0)
+            white.legend([band], ["95 % of white noise"], loc="lower right", handlelength=1.2)
         white.set(xlabel="Lag (ms)", ylabel="Correlation", ylim=(-1.05, 1.05))
         white.locator_params(axis="x", nbins=5)
         handles, labels = spectrum.get_legend_handles_labels()

@@ -25,7 +25,7 @@ from models.checks import Array
 _ALIKE = 1.08  # amplitudes that differ by less are one
 _MOST = 8
 # A test alone at its amplitude has no line through it.
-_MODEL_OF_SINES: dict[str, Any] = {**MODEL_OVER_MANY, "marker": "x", "markersize": 5.0}
+_MODEL_OF_SINES: dict[str, Any] = {**MODEL_OVER_MANY, "marker": "x", "markersize": 3.5}
 
 
 def stiffness(records: Sequence[ShownRecord], *, name: str) -> str | None:
@@ -122,7 +122,11 @@ def _degrees(values: Any) -> Array:
 
 
 def _points(colour: Any) -> dict[str, Any]:
-    return {"color": colour, "linestyle": "none", "marker": "o", "markersize": 5.5}
+    """Return rings, so that their colour shows beside the model's crosses inside them."""
+    return {
+        "color": colour, "linestyle": "none", "marker": "o", "markersize": 7.5,
+        "markerfacecolor": "none", "markeredgewidth": 1.8,
+    }  # fmt: skip
 
 
 def _legend(axes: Axes, curves: Sequence[_Curve]) -> None:

@@ -129,7 +129,7 @@ def _stiffness_caption(records: Sequence[ShownRecord], *, sines: bool, wide: boo
     model = {"model": "the model", "after": "the mended model"}.get(first, first)
     parts = []
     if sines:
-        parts.append("Of sine tests at their own frequency, a colour an amplitude: dots measured, "
+        parts.append("Of sine tests at their own frequency, a colour an amplitude: rings measured, "
                      f"crosses and dashes {model}")  # fmt: skip
     if wide:
         parts.append("Of other records by Welch's spectra where the motion excites them, with the "
