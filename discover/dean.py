@@ -38,17 +38,17 @@ class DeanCheck:
     verdict: str
     """"consistent", "contradicted", "undetermined", "no-boundary" or "no-geometry"."""
     boundary_dean: float | None
-    """At the boundary, in that convention."""
+    """Dean number at the boundary, in that convention."""
     interval: tuple[float, float] | None
-    """Of 95 %, in that convention; at least the bracket between neighbouring tests."""
+    """95 %, in that convention; at least the bracket between neighbouring tests."""
     boundary_dean_paper: float | None
-    """At the boundary by the paper's convention."""
+    """Dean number at the boundary by the paper's convention."""
     boundary_dean_standard: float | None
-    """At the boundary by the standard convention."""
+    """Dean number at the boundary by the standard convention."""
     amplitude_exponent: float | None
-    """k in f_low ~ A^k."""
+    """k in f_low ~ A^k, the boundary's frequency over the amplitude: -1 under the criterion."""
     amplitude_exponent_interval: tuple[float, float] | None
-    """Of 95 %."""
+    """95 %, of that exponent."""
     reason: str
     """The verdict in words, and what would decide it where it is open."""
 

@@ -38,11 +38,11 @@ class NextTest:
     """A proposed sine test."""
 
     frequency_hz: float
-    """Hz."""
+    """Frequency, Hz."""
     amplitude_m: float
-    """m."""
+    """Displacement amplitude, m."""
     separates: tuple[str, str]
-    """What it would tell apart."""
+    """The two structures that it would tell apart."""
     gain: float
     """Expected log Bayes factor, or what a narrower boundary is worth, nats."""
 

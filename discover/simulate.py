@@ -61,7 +61,7 @@ class ModelPrediction:
     """One model on all records."""
 
     name: str
-    """As given."""
+    """Name of the model, as given."""
     records: tuple[RecordPrediction, ...]
     """In the campaign's order."""
     rank: int
@@ -95,7 +95,7 @@ class ForceComparison:
     models: tuple[ModelPrediction, ...]
     """In the order given."""
     findings: tuple[Finding, ...]
-    """In words."""
+    """What a reader should know, in words."""
 
     @property
     def ranked(self) -> tuple[ModelPrediction, ...]:

@@ -26,7 +26,8 @@ def documents_page() -> str:
         " that is told as `a[].b` stands in every entry of the list `a`, one told as `a.NAME.b` in"
         " `a` below every name that is there. A key for which there is nothing to say may be left"
         " out of a document. A term's shape parameters stand beside its coefficient by their own"
-        " names: [terms and effects](terms.md) lists them.",
+        " names: [terms and effects](terms.md) lists them. F is the measured force, e that less the"
+        " model's, ||F|| the root of the sum of squares over all samples.",
         "",
     ]
     for name, (what, documents) in shown.items():

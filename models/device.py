@@ -77,7 +77,7 @@ class Device:
     """
 
     rod_radius: float
-    """[r1] m."""
+    """Radius of the piston rod [r1], m."""
     cylinder_radius: float
     """Inner radius [r2], m."""
     channel_radius: float

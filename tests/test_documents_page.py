@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from discover.cli import main
+from discover.data_check.result import AddedTest, Inseparable
 from tests.discover.sample_gap import sample_gap_document
 from tests.discover.sample_study import sample_document
 
@@ -90,6 +91,21 @@ NAMES = (
 def test_every_key_that_a_verb_writes_is_told(pages, told, written):
     left_out = {n: set(pages.document_keys(written[n])) - told[n] for n in NAMES}
     assert left_out == {n: set() for n in NAMES}
+
+
+def test_a_row_is_understood_without_the_row_above_it(pages):
+    meanings = re.findall(r"^\| `([^`]+)` \| (.*) \|$", pages.documents_page(), flags=re.M)
+    leaning = {k: m for k, m in meanings if re.match(r"Likewise|Return |\S+\.$", m)}
+    assert leaning == {}
+
+
+def test_what_a_check_says_only_of_poor_plans_is_told(told):
+    why = Inseparable(("FOIM", "IOIM-linear"), 0.1, "one frequency")
+    test = AddedTest(1.0, 0.01, ("FOIM", "IOIM-linear"), 3.0)
+    keys = {f"inseparable[].{k}" for k in why.to_dict()} | {
+        f"added_test.{k}" for k in test.to_dict()
+    }
+    assert keys - told["check"] == set()
 
 
 @pytest.mark.slow

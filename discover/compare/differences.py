@@ -28,7 +28,7 @@ class Difference:
     band: str
     """Which bands are compared, in words."""
     term: str
-    """Id."""
+    """Id of the term."""
     quantity: str
     """"coefficient", or a shape parameter."""
     units: tuple[str, ...]

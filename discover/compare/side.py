@@ -20,9 +20,9 @@ class SideBand:
     """A band of one answer."""
 
     lower: float | None
-    """Of the coordinate; None where open."""
+    """Lower end of the coordinate; None where open."""
     upper: float | None
-    """Of the coordinate; None where open."""
+    """Upper end of the coordinate; None where open."""
     structure: str
     """Of the paper's, or "other"."""
     probability: float | None

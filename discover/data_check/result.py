@@ -69,7 +69,7 @@ class Pair:
     """Two structures, and whether a plan of tests can tell them apart."""
 
     structures: tuple[str, str]
-    """Their names."""
+    """Names of the two."""
     gaps: tuple[ExpectedGap, ExpectedGap]
     """With the first true, with the second true."""
     rank: int
@@ -107,11 +107,11 @@ class Inseparable:
     """Two structures that the plan can't tell apart at the measured noise."""
 
     structures: tuple[str, str]
-    """Their names."""
+    """Names of the two."""
     gap: float
     """Expected log-likelihood gap, nats."""
     why: str
-    """In words."""
+    """Why these tests can't tell them apart, in words."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document's entry."""
@@ -123,13 +123,13 @@ class AddedTest:
     """The sine test that would do most for the pair that is hardest to tell apart."""
 
     frequency_hz: float
-    """Hz."""
+    """Frequency, Hz."""
     amplitude_m: float
-    """m."""
+    """Displacement amplitude, m."""
     structures: tuple[str, str]
     """The pair that is hardest to tell with this test added."""
     nats: float
-    """Its expected gap then."""
+    """Expected log-likelihood gap of that pair then."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document's entry."""
@@ -160,9 +160,9 @@ class DataCheck:
     structures: tuple[Conditioning, ...]
     """What the tests determine of each; none where no record may be fitted."""
     pairs: tuple[Pair, ...]
-    """Every two of them."""
+    """Every two structures, and whether these tests can tell them apart."""
     inseparable: tuple[Inseparable, ...]
-    """Those of the pairs that can't be told apart."""
+    """Pairs of structures that these tests can't tell apart."""
     added_test: AddedTest | None
     """What would help; None where every pair is separable or no other test is within limits."""
     figure_data: PlanFigureData
@@ -204,7 +204,7 @@ class DataCheck:
 
     @property
     def passed(self) -> bool:
-        """Return whether no finding is an error."""
+        """Whether no finding is an error."""
         return all(f.level != "error" for f in self.findings)
 
     def to_dict(self) -> dict[str, Any]:

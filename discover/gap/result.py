@@ -31,17 +31,17 @@ class NamedEffect:
     """One round."""
 
     effect: str
-    """Id."""
+    """Id of the effect that is added."""
     parameters: dict[str, float]
-    """Shape, SI."""
+    """Its shape parameters by name, SI."""
     coefficient: float
-    """In `unit`."""
+    """Its size, in `unit`."""
     interval: Interval
-    """95 %."""
+    """95 %, of the coefficient."""
     unit: str
-    """SI."""
+    """SI, of the coefficient."""
     probability: float
-    """Of the name."""
+    """That this is what is missing, from 0 to 1."""
     alternatives: tuple[tuple[str, float], ...]
     """What else it may be, most probable first."""
     indistinguishable: tuple[str, ...]
@@ -49,13 +49,13 @@ class NamedEffect:
     gap: tuple[float, float]
     """Percent before and after, fitted records, pooled in N."""
     alike: tuple[float, float]
-    """Likewise, root mean square of the records' own relative gaps: the quiet count as the loud."""
+    """Percent before and after, root mean square of the records' own gaps: all count alike."""
     unseen: tuple[float | None, float | None]
-    """Likewise, on records that were not fitted; None where there is one record only."""
+    """Percent before and after, of records that were not fitted; None of one record alone."""
     dropped: tuple[str, ...]
     """Earlier effects that it made superfluous."""
     share_percent: float
-    """Of the misfit beyond noise, that the effect explains."""
+    """How much of the misfit beyond noise the effect explains."""
     shape_adequate: bool
     """Whether its formula leaves little beside what it explains."""
     held_out_better: bool | None
@@ -105,15 +105,15 @@ class RecordGap:
     """One record before and after."""
 
     file: str
-    """Name."""
+    """Name of the record."""
     held_out: bool
-    """Never fitted."""
+    """True where it was never fitted."""
     noise: float
-    """Percent."""
+    """Of its force, percent."""
     before: float
-    """Percent."""
+    """Gap of the model as it was given, percent of the force."""
     after: float
-    """Percent."""
+    """Gap of the mended model, percent of the force."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document's entry."""
@@ -142,21 +142,21 @@ class Gap:
     baseline: tuple[FittedTerm, ...]
     """The model's terms as it was held against the data."""
     fitted: bool
-    """Its coefficients were fitted first."""
+    """True where the model's coefficients were fitted first."""
     fixed: bool
-    """They were held throughout."""
+    """True where the model's coefficients were held throughout."""
     gap_percent: float
-    """Before, pooled over the fitted records."""
+    """100 ||F - baseline||/||F|| over all fitted records."""
     held_out_gap_percent: float | None
-    """Before, over the records that were not fitted."""
+    """100 ||F - baseline||/||F|| over all records that were not fitted."""
     noise_percent: float
-    """Pooled."""
+    """100 ||noise||/||F|| over all fitted records."""
     where: tuple[Place, ...]
-    """By record."""
+    """Where the baseline misses, record by record."""
     where_text: str
-    """In a sentence."""
+    """The same in a sentence."""
     rounds: tuple[NamedEffect, ...]
-    """In order."""
+    """Effects that were added, in this order."""
     mended: tuple[MendedTerm, ...]
     """The baseline's terms and the added ones, as last fitted."""
     records: tuple[RecordGap, ...]
@@ -164,9 +164,9 @@ class Gap:
     verdict: str
     """"agrees", "closed", "reduced" or "unexplained"."""
     final_gap_percent: float
-    """After."""
+    """100 ||F - mended model||/||F|| over all fitted records."""
     final_held_out_gap_percent: float | None
-    """After."""
+    """100 ||F - mended model||/||F|| over all records that were not fitted."""
     unexplained_percent: float
     """What is left above the noise."""
     remainder: Unexplained

@@ -23,13 +23,13 @@ class Place:
     """One record's part in the misfit."""
 
     record: str
-    """File."""
+    """File of the record."""
     share: float
-    """Of the misfit's energy over all records."""
+    """Its share of the misfit's energy over all records."""
     ratio: float
     """Whitened misfit over what noise explains; 1 where there is only noise."""
     significant: bool
-    """Above noise, counting how many records were looked at."""
+    """Whether its misfit is above noise, counting how many records were looked at."""
     follows: tuple[tuple[str, float], ...]
     """What the misfit follows, and the share of it that each explains alone, greatest first."""
     reversal: float

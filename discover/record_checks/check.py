@@ -29,7 +29,7 @@ class RecordCheck:
     file: str
     """As in ``campaign.toml``."""
     held_out: bool
-    """Never fitted."""
+    """True where it is never fitted."""
     kind: RecordKind
     """What the motion shows."""
     samples: int

@@ -129,7 +129,7 @@ class Unexplained:
     percent: float
     """100 times its root mean square over the force's."""
     interval: tuple[float, float]
-    """95 %, by the noise."""
+    """95 %, as the noise leaves it open."""
 
     def to_dict(self) -> dict[str, object]:
         """Return the document's entry."""

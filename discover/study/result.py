@@ -101,7 +101,7 @@ class FrictionCurve:
     """How friction reverses."""
 
     text: str
-    """In words."""
+    """How friction reverses, in words."""
     key: str
     """"presliding_displacement" (m) or "transition_speed" (m/s); "" where it jumps."""
     value: float
@@ -131,29 +131,29 @@ class StudyBand:
     """One band: what holds there, how surely, how well."""
 
     lower: float | None
-    """Of the coordinate; None where open."""
+    """Lower end of the coordinate; None where open."""
     upper: float | None
-    """Likewise."""
+    """Upper end of the coordinate; None where open."""
     lower_hz: float
-    """Lowest frequency among its records."""
+    """Lowest frequency among its records, Hz."""
     upper_hz: float
-    """Highest."""
+    """Highest frequency among its records, Hz."""
     records: tuple[str, ...]
-    """Files."""
+    """Files of its fitted records."""
     family: str
     """"fractional", "integer" or "mixed"."""
     structure: str
     """One of the named structures, or "other"."""
     terms: tuple[TermEstimate, ...]
-    """Without nuisance."""
+    """Of its model, without what belongs to the measuring chain."""
     error_percent: float
-    """RMSE over the force's peak."""
+    """Root mean square of e, measured less modelled force, over the force's peak."""
     relative_error_percent: float
-    """100 ||e||/||F||."""
+    """100 ||e||/||F||, e measured less modelled force, F the measured force."""
     noise_percent: float
-    """100 ||noise||/||F||."""
+    """100 ||noise||/||F||, F the measured force."""
     probability: float
-    """Of the structure."""
+    """Of the structure, from 0 to 1."""
     equivalents: tuple[tuple[str, float], ...]
     """Structures that the data can't rule out, the named one first."""
     extras: tuple[Extra, ...]
@@ -191,11 +191,11 @@ class StudyBoundary:
     """Where two bands meet."""
 
     coordinate: float
-    """Of the study's coordinate."""
+    """Where it lies, in the study's coordinate."""
     bracket: Interval
-    """Coordinate of the tests beside it."""
+    """Coordinates of the tests on either side of it."""
     interval: Interval
-    """95 %."""
+    """95 %, of the coordinate."""
     speed: float | None
     """Speed amplitude, m/s; None where the coordinate is frequency."""
     frequency_hz: float
@@ -203,7 +203,7 @@ class StudyBoundary:
     dean: float | None
     """Dean number in the study's convention; None without geometry."""
     dean_interval: Interval | None
-    """95 %."""
+    """95 %, of the Dean number."""
     width: float | None = None
     """Where gradual: the range of the coordinate's logarithm over which models mix."""
 
@@ -238,25 +238,25 @@ class Study:
     seed: int
     """As asked."""
     coordinate: str
-    """"dean", "speed" or "frequency"."""
+    """What bands are of: "dean" (number), "speed" (m/s, amplitude) or "frequency" (Hz)."""
     relative_error_percent: float
-    """Pooled over the fitted records."""
+    """100 ||e||/||F|| over all fitted records, e measured less modelled force."""
     held_out_relative_error_percent: float | None
-    """Pooled over the held-out records; None without any."""
+    """100 ||e||/||F|| over all records that were held out; None without any."""
     identifiable: bool
     """False where the data leave several structures in a band."""
     findings: tuple[Finding, ...]
-    """In words."""
+    """What a reader should know of the records and of the answer."""
     bands: tuple[StudyBand, ...]
-    """In rising coordinate."""
+    """What holds in each band, from the lowest coordinate up."""
     nuisance: tuple[Nuisance, ...]
-    """Where they matter."""
+    """What belongs to the measuring chain (delay, gain, offset), where it matters."""
     boundaries: tuple[StudyBoundary, ...]
-    """Between the bands."""
+    """Where two bands meet, from the lowest up."""
     dean_check: DeanCheck
-    """Of the lowest boundary."""
+    """Whether the lowest boundary lies where the Dean criterion puts it."""
     next_test: NextTest | None
-    """None where nothing is left to tell."""
+    """The sine test that would tell most; None where nothing is left to tell."""
     model: SegmentedModel
     """Enough to simulate from."""
     draw: Callable[[], StudyFigureData] = field(repr=False, compare=False)

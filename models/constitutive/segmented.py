@@ -32,7 +32,7 @@ class Band:
     lower: float | None
     """Lower end of the coordinate; None where open."""
     upper: float | None
-    """Upper end; None where open."""
+    """Upper end of the coordinate; None where open."""
     model: ForceModel
     """The model inside."""
 

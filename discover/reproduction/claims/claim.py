@@ -25,7 +25,7 @@ class Claim:
     text: str
     """What the paper states, in our words."""
     verdict: Verdict
-    """Computed."""
+    """"reproduced", "not-reproduced" or "unverifiable", as computed."""
     printed: Value
     """The paper's value."""
     computed: Value
