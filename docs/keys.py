@@ -25,7 +25,7 @@ def breakable(body: str) -> str:
 
 def _with_breaks(code: re.Match[str]) -> str:
     opening, name, closing = code.groups()
-    return opening + re.sub(r"([._])(?=\w)", r"\1<wbr>", name) + closing
+    return opening + re.sub(r"(?<=[\w\]])([._])(?=\w)", r"\1<wbr>", name) + closing
 
 
 def _on_page(

@@ -75,6 +75,8 @@ def test_names_in_tables_break_after_dots_and_underscores_and_nowhere_else():
         from keys import breakable
     finally:
         sys.path.remove(str(DOCS))
+    ending = '<td><span class="pre">.csv</span></td>'
+    assert breakable(ending) == ending
     code = '<code><span class="pre">a[].b_c</span></code>'
     assert breakable(f"<p>{code}</p><td>{code}</td>") == (
         f"<p>{code}</p><td>{code.replace('.b_', '.<wbr>b_<wbr>')}</td>"

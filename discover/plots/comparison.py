@@ -9,6 +9,7 @@ import numpy as np
 
 from discover.plots.style import INK, MUTED, house_style, legend_above, new_figure, prediction_look
 from discover.plots.svg import series, to_svg
+from discover.words import zero_possible
 
 _ROW = 15.0  # CSS pixels of one answer
 _MARKERS = "osD^vPX"
@@ -22,7 +23,8 @@ def side_by_side(
     Parameters
     ----------
     quantities : sequence of mapping
-        As in ``comparison.json``; those that only one answer has are left out.
+        As in ``comparison.json``; left out are those that only one answer has, and those that may
+        be nothing in one: against these the others' intervals would be too short to see.
     names : sequence of str
         Of the answers.
     labels : sequence of str
@@ -73,8 +75,10 @@ def side_by_side(
 
 
 def _comparable(values: Sequence[Mapping[str, Any] | None]) -> bool:
-    """Return whether numbers have one unit and a mean that stands apart from nought."""
+    """Return whether numbers have one unit, a mean that stands apart from nought, and a size."""
     there = [v for v in values if v is not None]
+    if any(zero_possible(v["interval"]) for v in there):
+        return False
     sizes = [abs(v["value"]) for v in there]
     mean = abs(float(np.mean([v["value"] for v in there])))
     return len({v["unit"] for v in there}) == 1 and mean > 0.2 * max(sizes)

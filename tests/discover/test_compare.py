@@ -8,6 +8,7 @@ import pytest
 from discover.cli import main
 from discover.compare import comparison_document, differences, homogeneous, side_of_model
 from discover.compare.side import Side, SideBand
+from discover.plots.comparison import side_by_side
 from discover.report.comparison import comparison_files, comparison_lines
 from models.constitutive import Band, FittedTerm, ForceModel, SegmentedModel
 
@@ -71,6 +72,19 @@ def test_coefficients_of_different_units_are_not_compared():
     assert coefficient.differs is None
     assert "units" in coefficient.why
     assert order.differs is True
+
+
+def test_what_may_be_nothing_is_in_the_table_and_not_in_the_picture():
+    def coulomb(interval):
+        return {"id": "coulomb-friction", "coefficient": 5.0, "unit": "N", "interval": interval}
+
+    for least, drawn in ((1.0, 2), (0.0, 1)):
+        sides = [side(n, ("IOIM-linear", (inertia(60.0, 1.0), coulomb((least, 90.0)))))
+                 for n in "ab"]  # fmt: skip
+        quantities = comparison_document(sides, [], seed=0)["quantities"]
+        labels = [q["term"] for q in quantities]
+        picture = side_by_side(quantities, "ab", labels=labels)
+        assert sum(name in picture for name in labels) == drawn
 
 
 def test_answers_from_the_same_records_are_told_to_be_dependent():

@@ -239,3 +239,6 @@ def test_the_size_of_an_effect_in_one_test_may_be_zero():
         unsure = {"coefficient": 1.0, "interval": [-1.0, 3.0]}
         band["extras"] = [{**extra, **unsure} for extra in band["extras"]]
     assert "zero not ruled out" in report(document)
+    document = copy.deepcopy(sample_document())
+    document["bands"][0]["terms"][-1] |= unsure
+    assert report(document).count("zero not ruled out") == 1
