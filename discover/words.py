@@ -320,6 +320,8 @@ def band_range(band: Mapping[str, Any], coordinate: str) -> str:
     --------
     >>> band_range({"lower": None, "upper": 98.0}, "dean")
     'below 98'
+    >>> band_range({"lower": 0.775, "upper": 3.16}, "frequency")
+    'from 0.775 Hz to 3.16 Hz'
     """
     lower, upper = band.get("lower"), band.get("upper")
     if lower is None and upper is None:
@@ -329,7 +331,7 @@ def band_range(band: Mapping[str, Any], coordinate: str) -> str:
     if lower is not None and upper is None:
         return f"above {coordinate_value(lower, coordinate)}"
     return (
-        f"{coordinate_value(float(lower or 0.0), coordinate)} to "
+        f"from {coordinate_value(float(lower or 0.0), coordinate)} to "
         f"{coordinate_value(float(upper or 0.0), coordinate)}"
     )
 
