@@ -22,6 +22,7 @@ from discover.words import (
     remainder_text,
     short_name,
     significant,
+    zero_possible,
 )
 from models.cores import FRICTION, OTHER
 
@@ -111,8 +112,8 @@ def structure_name(band: Mapping[str, Any]) -> str:
 
 
 def _effects_beside(band: Mapping[str, Any]) -> str:
-    """Return what the device has beside its structure, by name: the same in all bands."""
-    names = _names(band.get("extras", ()))
+    """Return what the device surely has beside its structure, by name: the same in all bands."""
+    names = _names(e for e in band.get("extras", ()) if not zero_possible(e["interval"]))
     friction = band.get("friction") or {}
     if "presliding_displacement" in friction:
         names.insert(0, "presliding")
@@ -177,7 +178,8 @@ def _extra(group: Sequence[Mapping[str, Any]]) -> str:
         size = quantity(extra["coefficient"], extra["unit"], extra["interval"])
         told = shape({key: value for key, value in extra.items() if not key.endswith("_interval")})
         sizes.append(f"{size}, {told}" if told else size)
-    text = f"{short_name(str(group[0]['id']))} {'; '.join(sizes)}"
+    possibly = "possibly " if all(zero_possible(e["interval"]) for e in group) else ""
+    text = f"{possibly}{short_name(str(group[0]['id']))} {'; '.join(sizes)}"
     text += f", {probability(group[0]['probability'])}"
     others = [
         f"{short_name(str(a['effect']))} ({probability(a['probability'])})"

@@ -208,6 +208,15 @@ def test_headline_does_not_state_a_structure_that_may_well_be_another():
     )
 
 
+def test_what_may_as_well_be_nothing_is_possible_only_and_not_in_the_headline():
+    document = sample_document()
+    for band in document["bands"]:
+        for extra in band["extras"]:
+            extra["interval"] = [-20.0, 2400.0]
+    assert "with presliding (boundary 84 to 117)" in headline(document)
+    assert "Beside it: possibly stiffness" in "".join(verdict_lines(document))
+
+
 @pytest.mark.parametrize("verdict", ["consistent", "contradicted", "undetermined", "no-boundary"])
 def test_dean_line_leads_with_the_verdict(verdict):
     document = sample_document()
