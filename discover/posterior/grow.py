@@ -54,7 +54,8 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
     if any(c.assessed.quiet for c in found if c.assessed):
         return ordered(Step(tuple(found), assessor.seed))
     weighed = [_predicting(c) if c.value > now.value - _NATS else c for c in found]
-    return ordered(Step(tuple(weighed), assessor.seed, own_lines(now.predicting)))
+    parts = next(c.left.size for c in weighed if c.left is not None)
+    return ordered(Step(tuple(weighed), assessor.seed, own_lines(now.predicting, parts)))
 
 
 def _predicting(candidate: Candidate) -> Candidate:

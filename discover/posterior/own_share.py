@@ -26,7 +26,7 @@ def own_share(assessed: Assessed) -> float:
     return 1.0 / (1.0 + (float(np.mean(shown)) - 1.0) * common)
 
 
-def own_lines(assessed: Assessed) -> float:
-    """Return the number of a record's lines that say something of their own, in the mean."""
-    lines = float(np.mean([r.size.size for r in assessed.space.sheet.rows]))
-    return own_share(assessed) * lines
+def own_lines(assessed: Assessed, parts: int) -> float:
+    """Return the number of lines that say something of their own, in the mean of so many parts."""
+    lines = sum(r.size.size for r in assessed.space.sheet.rows)
+    return own_share(assessed) * lines / parts

@@ -27,8 +27,8 @@ class Candidate:
     count: int = 0
     """Number of terms that were added."""
     left: Array | None = None
-    """(N,) what it leaves of each record, predicted by the others: mean square over that of the
-    record's force. None where evidence decides, or rules it out."""
+    """(N,) what it leaves of each record, or each part of a lone one, predicted by the others: mean
+    square over that of its force. None where evidence decides, or rules it out."""
 
     @property
     def log_prior(self) -> float:
@@ -51,7 +51,7 @@ class Step:
     seed: int = 0
     """Of the draws of records."""
     lines: float = 1.0
-    """Number of a record's lines that say something of their own."""
+    """Number of lines of a record, or a part, that say something of their own."""
 
     @property
     def best(self) -> Candidate:
