@@ -1,5 +1,6 @@
 """What is missing on measured machines: what is known of them, and what would be wrong."""
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,12 @@ pytestmark = [
 ]
 
 
+@cache
+def gap_of(name, baseline):
+    """Return the answer for a machine, made once."""
+    return close_gap(read_campaign(FOLDER / name), baseline)
+
+
 @pytest.mark.parametrize(
     ("name", "baseline", "first", "wrong"),
     [
@@ -31,7 +38,7 @@ pytestmark = [
     ],
 )
 def test_what_helps_a_measured_machine_most_is_what_is_known_of_it(name, baseline, first, wrong):
-    gap = close_gap(read_campaign(FOLDER / name), baseline)
+    gap = gap_of(name, baseline)
     effects = [r.effect for r in gap.rounds]
     assert effects[0] == first
     assert not wrong & set(effects)
@@ -49,16 +56,16 @@ def test_what_helps_a_measured_machine_most_is_what_is_known_of_it(name, baselin
     ],
 )  # fmt: skip
 def test_what_would_be_wrong_of_a_measured_machine_is_not_named(name, baseline, wrong):
-    gap = close_gap(read_campaign(FOLDER / name), baseline)
+    gap = gap_of(name, baseline)
     assert not wrong & {r.effect for r in gap.rounds}
 
 
 def test_a_damper_with_an_offset_of_each_record_is_met_to_its_bar():
-    gap = close_gap(read_campaign(FOLDER / "fsae-damper-soft"), VISCOUS)
+    gap = gap_of("fsae-damper-soft", VISCOUS)
     assert [r.effect for r in gap.rounds] == ["force-offset", "coulomb-friction"]
     assert gap.rounds[-1].gap[1] < 12.0
 
 
 def test_a_damper_with_hysteresis_is_predicted_in_a_record_that_was_not_fitted():
-    gap = close_gap(read_campaign(FOLDER / "fsae-damper-hard"), VISCOUS)
+    gap = gap_of("fsae-damper-hard", VISCOUS)
     assert gap.rounds[-1].unseen[1] < 6.0
