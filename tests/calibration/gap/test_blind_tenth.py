@@ -28,7 +28,7 @@ def part(kind, place):
         ("first", 2),
         ("second", 0),
         pytest.param(
-            "third", 1, marks=pytest.mark.xfail(reason="a bar of it was seen missed on a third part")
+            "third", 1, marks=pytest.mark.xfail(reason="a bar was seen missed on a third")
         ),
     ],
 )
