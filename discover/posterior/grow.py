@@ -27,7 +27,7 @@ _FEW_STEPS = 3  # of a fit from each of several shapes, of which the best goes o
 _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already
-_NATS = 20.0  # less than that
+_NATS = 20.0  # less than that; also of evidence, by which a term may lose beside a remainder
 
 
 def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:

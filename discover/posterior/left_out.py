@@ -13,8 +13,7 @@ from discover.posterior.sheet import Sheet
 from models.checks import Array, Indices
 
 _DRAWS = 4000  # of records' weights
-_LEAST = 1e-12  # of a record's power, that a model leaves
-_NOTHING = 1e-12  # of a column's energy: rounding of a sum less one of its parts
+_NOTHING = 1e-12  # of an energy: rounding of a sum less one of its parts
 
 
 def left_out(assessed: Assessed) -> tuple[Array, Array]:
@@ -121,7 +120,7 @@ def predicts_best(errors: Sequence[Array], log_prior: Array, lines: float, seed:
     seed : int
         Of the draws.
     """
-    score = -0.5 * lines * np.log(np.maximum(np.array(errors), _LEAST))
+    score = -0.5 * lines * np.log(np.maximum(np.array(errors), _NOTHING))
     records = score.shape[1]
     weights = records * np.random.default_rng(seed).dirichlet(np.ones(records), _DRAWS)
     return np.asarray(softmax(weights @ score.T + log_prior, axis=1).mean(axis=0))

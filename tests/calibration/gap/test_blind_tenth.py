@@ -1,7 +1,7 @@
 """A small part of the blind study, held to its bars less the error of a count.
 
-Of each set a quarter of the effects of one device at one size and four campaigns with nothing
-hidden, and of the first three pairs: 36 campaigns, where the whole study has more than 2,000.
+Of each set a third of the effects of one device at one size and four campaigns with nothing hidden,
+and of the first three pairs: 43 campaigns, where the whole study has more than 2,000.
 """
 
 import pytest
@@ -18,8 +18,8 @@ SIZES = (0.2, 0.1, 0.05)
 
 
 def part(kind, place):
-    """Return a quarter of the effects of one device at one size."""
-    return single_cases(kind, [DEVICE], [SIZES[place]])[place::4]
+    """Return a third of the effects of one device at one size."""
+    return single_cases(kind, [DEVICE], [SIZES[place]])[place::3]
 
 
 @pytest.mark.parametrize(
@@ -27,17 +27,17 @@ def part(kind, place):
     [
         ("first", 2),
         ("second", 0),
-        pytest.param(
-            "third", 1, marks=pytest.mark.xfail(reason="a bar was seen missed on a third")
-        ),
+        pytest.param("third", 1, marks=pytest.mark.xfail(
+            strict=True, reason="of seven effects five are stated: two are unknown at 0.98 and 0.99"
+        )),
     ],
-)
+)  # fmt: skip
 def test_effects_are_named_and_close_the_gap(kind, place):
     bar = bars(kind)
     found = [o for o in outcomes(part(kind, place)) if o.named[0] != IMPOSSIBLE]
     single = [o for o in found if o.case.ids != ("outside",)]
     outside = [o for o in found if o.case.ids == ("outside",)]
-    assert len(single) >= 4
+    assert len(single) >= 6
     assert holds([o.right for o in single], bar.named[SIZES[place]])
     assert holds([o.stated for o in single], bar.stated)
     assert holds([o.ratio <= TIMES_NOISE for o in single if o.right], bar.closed)
