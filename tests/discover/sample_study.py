@@ -1,5 +1,6 @@
 """A study as its document and figure data, written by hand: the report's input in tests."""
 
+import copy
 import math
 
 import numpy as np
@@ -159,8 +160,8 @@ def sample_document():
                     term("coulomb-friction", 402.0, "N"),
                     term("stiffness", 1210.0, "N/m"),
                 ],
-                "extras": [EXTRA],
-                "friction": FRICTION_CURVE,
+                "extras": [copy.deepcopy(EXTRA)],
+                "friction": copy.deepcopy(FRICTION_CURVE),
                 "remainder_percent": {"value": 0.52, "interval": [0.31, 0.68]},
                 "error_percent": 1.3,
                 "relative_error_percent": 2.3,
@@ -186,8 +187,8 @@ def sample_document():
                     term("coulomb-friction", 402.0, "N"),
                     term("stiffness", 1210.0, "N/m"),
                 ],
-                "extras": [EXTRA],
-                "friction": FRICTION_CURVE,
+                "extras": [copy.deepcopy(EXTRA)],
+                "friction": copy.deepcopy(FRICTION_CURVE),
                 "remainder_percent": {"value": 0.1, "interval": [0.0, 0.25]},
                 "error_percent": 1.2,
                 "relative_error_percent": 2.2,
