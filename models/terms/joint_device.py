@@ -17,7 +17,7 @@ _LEAST_DRY = 1e-6  # of the force's root mean square
 _SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
 _REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
 _MOST_KNOWN = 32  # devices of one motion that are kept
-_CYCLE = 8192  # samples of a motion at most, whose columns are
+_SEEN = 8192  # samples of a motion at least, by which a device is told where there are more
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,9 @@ class _Known:
     )
     """By the force's identity, and whether it came without a model."""
     resistances: _Resistances | None = None
-    """None where they were not asked for, or the motion is long."""
+    """None where they were not asked for."""
     still: Motion | None = None
-    """The same speeds without displacement; None likewise."""
+    """The same speeds without displacement; None likewise, or where the motion is long."""
 
     @classmethod
     def of(cls, motion: Motion) -> Self:
@@ -119,7 +119,7 @@ def at_rest(motion: Motion) -> Motion:
     if known.still is not None:
         return known.still
     still = replace(motion, displacement=np.zeros_like(motion.displacement))
-    if still.displacement.size <= _CYCLE:
+    if still.displacement.size <= _SEEN:
         known.still = still
     return still
 
@@ -138,7 +138,8 @@ def _device(force: Array, motion: Motion) -> Array:
     top = float(np.abs(v).max())
     if not np.all(np.isfinite(force)) or top == 0.0:
         return np.zeros(5)
-    sought = force - force.mean()
+    sought = force[_seen(motion)]
+    sought = sought - sought.mean()
     resistances = _resistances_of(motion)
     found, left = resistances.fitted(sought)
     best = int(left.argmin())
@@ -149,7 +150,9 @@ def _device(force: Array, motion: Motion) -> Array:
         before, at, after = left[best - 1 : best + 2]
         shift = 0.5 * (before - after) / max(before - 2.0 * at + after, before - at, 1e-300)
         reversal *= (_REVERSALS[1] / _REVERSALS[0]) ** shift
-        closer = _Resistances.of(resistances.columns[:3], np.tanh(v / reversal)[None])
+        closer = _Resistances.of(
+            resistances.columns[:3], np.tanh(v[_seen(motion)] / reversal)[None]
+        )
         found, best = closer.fitted(sought)[0], 0
     return np.append(found[best], reversal)
 
@@ -159,10 +162,13 @@ def _resistances_of(motion: Motion) -> _Resistances:
     known = _Known.of(motion)
     if known.resistances is not None:
         return known.resistances
-    v = motion.velocity
-    plain = np.stack([motion.acceleration, v, v * np.abs(v)])
-    dry = np.tanh(v / (_REVERSALS[:, None] * float(np.abs(v).max())))
-    found = _Resistances.of(plain, dry)
-    if v.size <= _CYCLE:
-        known.resistances = found
-    return found
+    top = float(np.abs(motion.velocity).max())
+    v, a = motion.velocity[_seen(motion)], motion.acceleration[_seen(motion)]
+    plain = np.stack([a, v, v * np.abs(v)])
+    known.resistances = _Resistances.of(plain, np.tanh(v / (_REVERSALS[:, None] * top)))
+    return known.resistances
+
+
+def _seen(motion: Motion) -> slice:
+    """Return the samples by which a device is told: all of a cycle, every so many of a long run."""
+    return slice(None, None, max(motion.velocity.size // _SEEN, 1))

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from models.constitutive import FittedTerm, ForceModel
-from models.motion import harmonic_motion
+from models.motion import Motion, harmonic_motion
 from models.terms.joint import Joint, through_joint
 from models.terms.joint_device import device_of
 
@@ -24,10 +24,16 @@ def test_a_spring_before_a_linear_device_has_its_transfer_function(frequency, lo
     """Also one that has a spring itself, and one that a magnet pulls away from its middle."""
     given = motion(frequency)
     stiffness = MASS * (2.0 * np.pi * 3.1) ** 2  # resonance among the tests
-    model = ForceModel(tuple(
-        FittedTerm(name, value)
-        for name, value in (("inertia", MASS), ("viscous-damping", VISCOUS), ("stiffness", spring))
-    ))
+    model = ForceModel(
+        tuple(
+            FittedTerm(name, value)
+            for name, value in (
+                ("inertia", MASS),
+                ("viscous-damping", VISCOUS),
+                ("stiffness", spring),
+            )
+        )
+    )
     force = model.force(given)
     known = device_of(force, given, model.force)
     found = through_joint(force, given, Joint(stiffness, loss), known)
@@ -127,7 +133,13 @@ def driven(given, frequency, carried):
     start = (given.displacement[0] - given.displacement.mean(), given.velocity[0])
     times = (6.0 + np.arange(given.time.size) / given.time.size) / frequency
     found = solve_ivp(
-        slope, (0.0, times[-1]), start, method="LSODA", t_eval=times, rtol=1e-8, atol=1e-10,
+        slope,
+        (0.0, times[-1]),
+        start,
+        method="LSODA",
+        t_eval=times,
+        rtol=1e-8,
+        atol=1e-10,
         max_step=1e-3,
     )
     return np.array([carried(*ahead(t, y)) for t, y in zip(times, found.y.T, strict=True)])
@@ -174,3 +186,21 @@ def test_hard_flanks_push_as_long_as_those_that_an_integrator_of_others_meets(fr
     exact = np.roll(dense, fine // 2).reshape(cells, fine).mean(axis=1)
     assert np.std(exact - force) > 0.02 * np.std(force)
     assert np.std(found - exact) < 0.02 * np.std(exact - force)
+
+
+def test_a_device_is_told_in_a_long_run_as_in_a_cycle():
+    """Mass, resistances and the range of reversal, of motion that is no sine."""
+    time = 1e-3 * np.arange(60_000)
+    omega = 2.0 * np.pi * np.geomspace(0.1, 20.0, 40)[:, None]
+    angle = omega * time + np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, (40, 1))
+    x, v, a = (
+        1e-3 * np.sum(wave, axis=0)
+        for wave in (np.sin(angle) / omega, np.cos(angle), -omega * np.sin(angle))
+    )
+    given = Motion(time, x, v, a, lambda orders: np.zeros((len(orders), x.size)), "none")
+    force = 60.0 * a + 300.0 * v + 2e4 * v * np.abs(v) + 40.0 * v / np.hypot(v, 1e-3)
+    mass, viscous, quadratic, dry, reversal, spring = device_of(force, given)
+    assert mass == pytest.approx(60.0, rel=0.002)
+    assert spring == 0.0
+    resisting = viscous * v + quadratic * v * np.abs(v) + dry * np.tanh(v / reversal)
+    assert np.std(force - mass * a - resisting) < 0.03 * np.std(force - 60.0 * a)
