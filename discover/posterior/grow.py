@@ -59,14 +59,10 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
 
 
 def _predicting(candidate: Candidate) -> Candidate:
-    """Return a candidate with what it leaves of records that are predicted by the others.
-
-    Of a record that can't be parted, what it leaves there itself.
-    """
+    """Return a candidate with what it leaves of records that are predicted by the others."""
     if candidate.assessed is None:
         return candidate
-    fitted, predicted = left_out(candidate.assessed.predicting)
-    return replace(candidate, left=predicted if predicted.size > 1 else fitted)
+    return replace(candidate, left=left_out(candidate.assessed.predicting)[1])
 
 
 def _simulated(identifier: str) -> bool:

@@ -19,7 +19,8 @@ _NOTHING = 1e-12  # of an energy: rounding of a sum less one of its parts
 def left_out(assessed: Assessed) -> tuple[Array, Array]:
     """Return what a model leaves of each record: fitted to all, and to the others alone.
 
-    Of one record alone, parts that move alike are left out in turn. What belongs to a record and
+    Of one record alone, parts that move alike are left out in turn; of one in a single part, what a
+    fit to all of it leaves stands for both. What belongs to a record and
     to no other, as an offset of its own, can't be known from the others: it is taken from it.
 
     Parameters
@@ -59,7 +60,7 @@ def left_out(assessed: Assessed) -> tuple[Array, Array]:
             values = _beside(own, spread, free & ~seen, values)
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
             found[place, part] = _relative(space.sheet, np.flatnonzero(inside), left)
-    return found[0], found[1]
+    return found[0], found[-1] if found.shape[1] > 1 else found[0]
 
 
 def _beside(gram: Array, spread: Array, free: Indices, values: Array) -> Array:
@@ -127,15 +128,12 @@ def predicts_best(errors: Sequence[Array], log_prior: Array, lines: float, seed:
 
 
 def _relative(sheet: Sheet, units: Indices, left: Array) -> float:
-    """Return the mean square of what is left in units, over that of their force."""
+    """Return the energy of what is left in units of a record, over that of the record's force."""
+    rows = sheet.rows[sheet.units[int(units[0])].record]
+    whole = float(np.sum((rows.target / rows.size) ** 2))
     total = 0.0
     for u, own in zip(units, left, strict=True):
-        unit = sheet.units[int(u)]
-        size = sheet.rows[unit.record].size[unit.part]
-        if unit.basis is None:
-            shown = np.zeros(own.size)
-            shown[: size.size] = size**-2.0
-        else:
-            shown = np.full(own.size, float(np.mean(size**-2.0)))
-        total += float(np.sum(shown * own**2))
-    return total
+        part, basis = sheet.units[int(u)].part, sheet.units[int(u)].basis
+        here = own[: part.size] if basis is None else basis @ own[: basis.shape[1]]
+        total += float(np.sum((here / rows.size[part]) ** 2))
+    return total / max(whole, 1e-300)

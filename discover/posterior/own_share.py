@@ -14,19 +14,20 @@ def own_share(assessed: Assessed) -> float:
     it is 1 / (1 + (M - 1) R): what a sample of clusters is worth (L. Kish, *Survey Sampling*,
     1965).
     """
-    sheet = assessed.space.sheet
-    left = (sheet.target - assessed.local.force) ** 2
+    left = (assessed.space.sheet.target - assessed.local.force) ** 2
     whole = left.sum(axis=1)
-    lines = sum(
-        sheet.rows[u.record].size[u.part].size if u.basis is None else u.basis.shape[1]
-        for u in sheet.units
-    )
-    common = max(1.0 - lines / max(float(whole.sum()), 1e-300), 0.0)
+    common = max(1.0 - _lines(assessed) / max(float(whole.sum()), 1e-300), 0.0)
     shown = whole**2 / np.maximum(np.sum(left**2, axis=1), 1e-300)
     return 1.0 / (1.0 + (float(np.mean(shown)) - 1.0) * common)
 
 
 def own_lines(assessed: Assessed, parts: int) -> float:
     """Return the number of lines that say something of their own, in the mean of so many parts."""
-    lines = sum(r.size.size for r in assessed.space.sheet.rows)
-    return own_share(assessed) * lines / parts
+    return own_share(assessed) * _lines(assessed) / parts
+
+
+def _lines(assessed: Assessed) -> int:
+    """Return the number of lines, of many that models can't tell apart the directions that do."""
+    return sum(
+        u.part.size if u.basis is None else u.basis.shape[1] for u in assessed.space.sheet.units
+    )

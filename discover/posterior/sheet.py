@@ -108,7 +108,7 @@ def sheet_of(rows: Sequence[RecordRows], columns: Sequence[Array]) -> Sheet:
             remainder = r.remainder[:, unit.part]
             left = np.zeros(2 + loudness.shape[0])
             if unit.part.size > _MOST_ROWS:
-                basis = _basis(own[:, unit.part], remainder, target)
+                basis = _basis(own[:, unit.part], remainder, target, r.size[unit.part])
                 unit = Unit(
                     unit.record, unit.part, unit.frequency, unit.amplitude, unit.speed, basis
                 )
@@ -178,8 +178,11 @@ def _units(rows: RecordRows, place: int) -> list[Unit]:
     return found
 
 
-def _basis(columns: Array, remainder: Array, target: Array) -> Array:
-    """Return orthonormal directions (P, R): the target's, then those in which columns show."""
+def _basis(columns: Array, remainder: Array, target: Array, level: Array) -> Array:
+    """Return orthonormal directions (P, R) in which the target or columns show.
+
+    In them an error that is the same in all rows, `level` (P,) of white ones, is independent.
+    """
     size = float(np.linalg.norm(target))
     whole = np.concatenate([columns, remainder])
     norm = np.linalg.norm(whole, axis=1)
@@ -191,4 +194,5 @@ def _basis(columns: Array, remainder: Array, target: Array) -> Array:
     length = float(np.linalg.norm(left))
     if length > 1e-9 * max(size, 1e-300):
         kept = np.concatenate([kept, left[None] / length])
-    return np.asarray(kept.T)
+    _, turn = np.linalg.eigh((kept * level**2) @ kept.T)
+    return np.asarray(kept.T @ turn)

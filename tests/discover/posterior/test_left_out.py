@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from discover.posterior.left_out import is_less, left_out, predicts_best
 from discover.posterior.model import Composite
+from discover.records import Campaign, Record
+from discover.rows.columns import force_columns
 from discover.study import StudyOptions
 from discover.study.prepare import prepare
 from models.constitutive import FittedTerm, ForceModel
@@ -88,3 +91,31 @@ def predicted(device, model):
     assessor = device.assessor
     assessed = assessor.assess(Composite.of(model), assessor.space.start)
     return left_out(assessed.predicting)[1]
+
+
+def long_record():
+    """Return a long random record of a device with a cube, with noise that rises to slow motion."""
+    rng = np.random.default_rng(4)
+    time = 0.005 * np.arange(12_000)
+    omega = 2.0 * np.pi * np.sort(rng.uniform(0.3, 8.0, 80))[:, None]
+    angle = omega * time + rng.uniform(0.0, 2.0 * np.pi, omega.shape)
+    x = np.sum(0.002 / omega * np.sin(angle), axis=0)
+    v = np.sum(0.002 * np.cos(angle), axis=0)
+    a = np.sum(-0.002 * omega * np.sin(angle), axis=0)
+    noise = lfilter([1.0], [1.0, -0.995], rng.standard_normal(time.size))
+    return Record("random.csv", time, 80.0 * a + 900.0 * v + 1e9 * x**3 + 0.02 * noise, x)
+
+
+@pytest.mark.parametrize("names", [("inertia", "viscous-damping"), ("inertia", "cubic-stiffness")])
+def test_what_a_model_leaves_of_a_long_record_is_what_least_squares_on_all_its_rows_leave(names):
+    device = prepare(Campaign("one", (long_record(),)), StudyOptions()).device
+    (rows,) = device.rows
+    assert rows.target.size > 400
+    terms = [FittedTerm(n, 1.0, {}) for n in names]
+    *columns, force = np.vstack([force_columns(rows, terms), rows.target]) / rows.size
+    missed = force - np.transpose(columns) @ np.linalg.lstsq(np.transpose(columns), force)[0]
+    assessor = device.assessor
+    assessed = assessor.assess(Composite.of(ForceModel(tuple(terms))), assessor.space.start)
+    fitted, unseen = left_out(assessed.predicting)
+    assert np.sum(fitted) == pytest.approx(float(missed @ missed / (force @ force)), rel=0.02)
+    assert np.all(unseen >= 0.99 * fitted)
