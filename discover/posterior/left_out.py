@@ -20,8 +20,8 @@ def left_out(assessed: Assessed) -> tuple[Array, Array]:
     """Return what a model leaves of each record: fitted to all, and to the others alone.
 
     Of one record alone, parts that move alike are left out in turn; of one in a single part, what a
-    fit to all of it leaves stands for both. What belongs to a record and
-    to no other, as an offset of its own, can't be known from the others: it is taken from it.
+    fit to all of it leaves stands for both. What belongs to a record and to no other, as an offset
+    of its own, can't be known from the others: it is taken from it.
 
     Parameters
     ----------
@@ -60,7 +60,8 @@ def left_out(assessed: Assessed) -> tuple[Array, Array]:
             values = _beside(own, spread, free & ~seen, values)
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
             found[place, part] = _relative(space.sheet, np.flatnonzero(inside), left)
-    return found[0], found[-1] if found.shape[1] > 1 else found[0]
+    fitted, predicted = found
+    return fitted, predicted if predicted.size > 1 else fitted
 
 
 def _beside(gram: Array, spread: Array, free: Indices, values: Array) -> Array:

@@ -16,21 +16,9 @@ from tests.discover.gap_data import campaign, device, record
 
 BASE = "fit:inertia,viscous-damping"
 KEYS = {
-    "schema",
-    "version",
-    "seed",
-    "campaign",
-    "baseline",
-    "gap_percent",
-    "noise_percent",
-    "held_out_gap_percent",
-    "where",
-    "rounds",
-    "records",
-    "verdict",
-    "final_gap_percent",
-    "final_held_out_gap_percent",
-    "unexplained_percent",
+    "schema", "version", "seed", "campaign", "baseline", "gap_percent", "noise_percent",
+    "held_out_gap_percent", "where", "rounds", "records", "verdict", "final_gap_percent",
+    "final_held_out_gap_percent", "unexplained_percent",
 }
 
 
@@ -44,7 +32,9 @@ def test_nothing_is_missing_in_what_the_model_made():
 
 @pytest.fixture(scope="module")
 def offset():
-    return close_gap(campaign(lambda t, x, v, a: device(t, x, v, a) + 25.0, held_out=(1, 6)), BASE)
+    return close_gap(
+        campaign(lambda t, x, v, a: device(t, x, v, a) + 25.0, held_out=(1, 6)), BASE
+    )
 
 
 def test_an_offset_is_named_with_its_size_and_closes_the_gap(offset):
@@ -90,7 +80,8 @@ def test_friction_that_sets_in_during_a_record_is_told_as_friction(settling):
     """A friction that warms from nothing and a constant one are the two forms that it may take."""
     found = close_gap(
         campaign(
-            lambda t, x, v, a: device(t, x, v, a) + 40.0 * np.sign(v) * -np.expm1(-t / settling)
+            lambda t, x, v, a: device(t, x, v, a)
+            + 40.0 * np.sign(v) * -np.expm1(-t / settling)
         ),
         BASE,
     )
@@ -147,15 +138,8 @@ def test_leaving_out_a_record_predicts_worse_than_fitting_it():
 def test_the_misfit_of_the_exact_force_is_the_noise():
     data = campaign(device, noise=0.02)
     seen = [observe(r) for r in data.records]
-    exact = [
-        compared_with(
-            o,
-            device(
-                0, *(getattr(o.motion, k) for k in ("displacement", "velocity", "acceleration"))
-            ),
-        )
-        for o in seen
-    ]
+    exact = [compared_with(o, device(0, *(getattr(o.motion, k) for k in (
+        "displacement", "velocity", "acceleration")))) for o in seen]
     assert pooled_percent(exact) == pytest.approx(2.0, rel=0.03)
     assert noise_percent(exact) == pytest.approx(2.0, rel=0.1)
 
@@ -172,7 +156,9 @@ def test_bad_baselines_are_refused_in_words():
 
 
 def test_the_same_search_twice_is_the_same(offset):
-    again = close_gap(campaign(lambda t, x, v, a: device(t, x, v, a) + 25.0, held_out=(1, 6)), BASE)
+    again = close_gap(
+        campaign(lambda t, x, v, a: device(t, x, v, a) + 25.0, held_out=(1, 6)), BASE
+    )
     assert again.to_dict() == offset.to_dict()
     assert discover.close_gap is close_gap
     assert np.isfinite(again.unexplained_percent)

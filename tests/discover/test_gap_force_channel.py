@@ -117,7 +117,7 @@ def test_a_force_that_was_filtered_after_it_was_sampled_is_a_delay():
     assert found.final_held_out_gap_percent < 1.1 * found.noise_percent
 
 
-@pytest.mark.xfail(strict=True, reason="half of the gain, and a filter before sampling, is stated")
+@pytest.mark.xfail(strict=True, reason="a delay is named first")
 def test_a_gain_behind_a_logger_s_filter_is_no_delay():
     """Its lag is a twentieth of a sample; a delay had been named with certainty."""
     corner = 55.0

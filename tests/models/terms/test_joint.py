@@ -24,16 +24,10 @@ def test_a_spring_before_a_linear_device_has_its_transfer_function(frequency, lo
     """Also one that has a spring itself, and one that a magnet pulls away from its middle."""
     given = motion(frequency)
     stiffness = MASS * (2.0 * np.pi * 3.1) ** 2  # resonance among the tests
-    model = ForceModel(
-        tuple(
-            FittedTerm(name, value)
-            for name, value in (
-                ("inertia", MASS),
-                ("viscous-damping", VISCOUS),
-                ("stiffness", spring),
-            )
-        )
-    )
+    model = ForceModel(tuple(
+        FittedTerm(name, value)
+        for name, value in (("inertia", MASS), ("viscous-damping", VISCOUS), ("stiffness", spring))
+    ))
     force = model.force(given)
     known = device_of(force, given, model.force)
     found = through_joint(force, given, Joint(stiffness, loss), known)
@@ -133,13 +127,7 @@ def driven(given, frequency, carried):
     start = (given.displacement[0] - given.displacement.mean(), given.velocity[0])
     times = (6.0 + np.arange(given.time.size) / given.time.size) / frequency
     found = solve_ivp(
-        slope,
-        (0.0, times[-1]),
-        start,
-        method="LSODA",
-        t_eval=times,
-        rtol=1e-8,
-        atol=1e-10,
+        slope, (0.0, times[-1]), start, method="LSODA", t_eval=times, rtol=1e-8, atol=1e-10,
         max_step=1e-3,
     )
     return np.array([carried(*ahead(t, y)) for t, y in zip(times, found.y.T, strict=True)])
