@@ -98,19 +98,17 @@ class Assessor:
     seed: int = 0
     """Of what is drawn."""
 
-    @cached_property
-    def coarse(self) -> Evaluator:
-        """Evaluator of what may join a model, where a quarter of a cycle's points is enough."""
-        return Evaluator(self.space.sheet, self.space.scales, coarse=True)
-
     def glance(
         self, model: Composite, place: Place, *, iterations: int
     ) -> tuple[Composite, float]:
-        """Return a model after a few steps of a fit, and its log evidence at these sizes, nats."""
+        """Return a model after a few steps of a fit, and its log evidence at these sizes, nats.
+
+        On the coarse rows.
+        """
         space, curve = self.behind(model), self.curve_of(model)
         sizes = place.sizes(space.own_unit)
-        here = local_of(space, self.evaluator, model)
-        local = fitted(space, self.evaluator, here, sizes, curve, iterations=iterations)
+        here = local_of(space, self.evaluator.coarse, model)
+        local = fitted(space, self.evaluator.coarse, here, sizes, curve, iterations=iterations)
         value = judged(local, local.beside(space, curve), sizes).value
         if space is not self.space:
             space.forget()

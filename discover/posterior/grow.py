@@ -74,7 +74,7 @@ def _tried(
     assessor: Assessor, now: Assessed, ids: Sequence[str], among: int
 ) -> list[Candidate]:
     space = now.space
-    trials = trials_of(space.scales, assessor.coarse, ids, now.model, among=among)
+    trials = trials_of(space.scales, assessor.evaluator.coarse, ids, now.model, among=among)
     if not trials.entries:
         return []
     curve = assessor.curve_of(now.model)
@@ -103,7 +103,7 @@ def _tried(
 
 def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:
     """Return a term beside the model, fitted from its best shapes."""
-    evaluator = assessor.coarse
+    evaluator = assessor.evaluator.coarse
     start = now.place.towards(assessor.space.quiet)
     chosen = [
         (gain, model) for gain in _starting(starts)

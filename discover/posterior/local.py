@@ -88,7 +88,7 @@ def local_of(
     """Return a model's linear form around its values; all its numbers are free by default."""
     free = model.numbers if numbers is None else tuple(numbers)
     at = evaluator.force(model)
-    slopes = evaluator.slopes(model, free, at)
+    slopes = evaluator.slopes(model, free)
     spread, sign = np.ones(len(free)), np.zeros(len(free))
     sizes = space.sheet.scale(slopes)
     for i, n in enumerate(free):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -145,10 +146,16 @@ class Evaluator:
     def __init__(self, sheet: Sheet, scales: Scales, *, coarse: bool = False) -> None:
         self._sheet = sheet
         self._scales = scales
+        self._is_coarse = coarse
         self._rows = tuple(r.coarse if coarse else r for r in sheet.rows)
         self._forces = tuple(RecordForces(r) for r in self._rows)
         self._known: dict[tuple[object, ...], Array] = {}
         self._latest: dict[tuple[object, ...], Array] = {}
+
+    @cached_property
+    def coarse(self) -> Evaluator:
+        """The same with a quarter of a cycle's points: enough for differences between models."""
+        return self if self._is_coarse else Evaluator(self._sheet, self._scales, coarse=True)
 
     def unit(self, fitted: FittedTerm) -> Array:
         """Return the rows (U, R) of a unit of a term that adds a force."""
@@ -210,10 +217,16 @@ class Evaluator:
             result[place, : block.shape[1]] = block[0]
         return result
 
-    def slopes(self, model: Composite, numbers: Sequence[Number], at: Array) -> Array:
-        """Return the change (U, P, R) of a model's rows (U, R) with each number."""
+    def slopes(self, model: Composite, numbers: Sequence[Number]) -> Array:
+        """Return the change (U, P, R) of a model's rows with each number.
+
+        Of models that have to be simulated, from the coarse rows.
+        """
         found = []
         linear = model.adds_up
+        if not linear and not self._is_coarse:
+            return self.coarse.slopes(model, numbers)
+        at = self.force(model)
         for number in numbers:
             placed = model.terms[number.term]
             share = 1.0 if placed.share is None else np.array(placed.share)[:, None]
