@@ -194,6 +194,8 @@ SAID = {
     "comparison.errors[].campaign.hash": "SHA-256 over `campaign.toml` and the records' bytes.",
     "study.held_out_relative_error_percent": "100 ||e||/||F|| over all held-out records; absent"
     " where none is held out.",
+    "study.held_out_with_own_values_percent": "The same, where what every test has of its own (an"
+    " offset, a delay) is fitted to these records and nothing else is; absent where nothing is.",
     "study.bands[].extras[].id": "Id of the term or effect.",
     "study.bands[].extras[].coefficient": "Its size, in `unit`.",
     "study.bands[].extras[].std_error": "Of the coefficient.",

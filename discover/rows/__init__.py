@@ -13,6 +13,7 @@ from discover.rows.accuracy import (
 )
 from discover.rows.band_rows import band_rows
 from discover.rows.force import RecordForces, force_at_samples, force_rows
+from discover.rows.own_values import with_own_values
 from discover.rows.record_rows import RecordRows
 from discover.rows.sine_rows import sine_rows
 
@@ -36,4 +37,5 @@ __all__ = [
     "pooled_percent",
     "record_rows",
     "unexplained",
+    "with_own_values",
 ]

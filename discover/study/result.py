@@ -243,6 +243,9 @@ class Study:
     """100 ||e||/||F|| over all fitted records, e measured less modelled force."""
     held_out_relative_error_percent: float | None
     """100 ||e||/||F|| over all records that were held out; None without any."""
+    held_out_with_own_values_percent: float | None
+    """The same, where what every test has of its own, an offset say, is taken as these records show
+    it; None where there is no such thing."""
     identifiable: bool
     """False where the data leave several structures in a band."""
     findings: tuple[Finding, ...]
@@ -391,6 +394,8 @@ class Study:
         }
         if self.held_out_relative_error_percent is not None:
             result["held_out_relative_error_percent"] = self.held_out_relative_error_percent
+        if self.held_out_with_own_values_percent is not None:
+            result["held_out_with_own_values_percent"] = self.held_out_with_own_values_percent
         result["headline"] = headline(result)
         return result
 

@@ -17,7 +17,7 @@ from discover.dean import AmplitudeExponent, DeanCheck, amplitude_exponent, chec
 from discover.figure_data import StructureProbability, StudyFigureData
 from discover.motion_fit import Observation
 from discover.records import Campaign
-from discover.rows import Accuracy, accuracy, pooled_percent
+from discover.rows import Accuracy, accuracy, pooled_percent, record_rows, with_own_values
 from discover.study.bands import core_probabilities, study_bands
 from discover.study.baselines import baseline_answers
 from discover.study.estimate import Estimates, estimated
@@ -32,6 +32,7 @@ from models.constitutive import Band, ForceModel, SegmentedModel
 from models.cores import CORES
 from models.device import Device
 from models.flow import dean_per_speed
+from models.terms.between_tests import ONLY
 
 
 def run_study(campaign: Campaign, options: StudyOptions | None = None) -> Study:
@@ -122,6 +123,10 @@ def _study(
         coordinate=coordinate,
         relative_error_percent=pooled_percent(fitted),
         held_out_relative_error_percent=pooled_percent(held) if held else None,
+        held_out_with_own_values_percent=_with_own_values(
+            [(o, estimates.models[b]) for o, b in zip(prepared.observations, place, strict=True)
+             if o.held_out]
+        ),
         identifiable=all(len(b.equivalents) < 2 for b in bands),
         findings=findings,
         bands=bands,
@@ -133,6 +138,18 @@ def _study(
         ),
         model=model,
         draw=partial(_figures, prepared, answer, bands, accuracies, place, device),
+    )
+
+
+def _with_own_values(held: Sequence[tuple[Observation, ForceModel]]) -> float | None:
+    """Return the error of records that were held out where what tests have of their own is theirs.
+
+    None where no term is of one test only.
+    """
+    if not any(t.shape.get(ONLY.name, 0.0) > 0.0 for _, model in held for t in model.terms):
+        return None
+    return pooled_percent(
+        [accuracy(o, with_own_values(model, record_rows(o))) for o, model in held]
     )
 
 

@@ -102,6 +102,7 @@ def _study(d: Mapping[str, Any], model: SegmentedModel) -> Study:
         coordinate=d["coordinate"],
         relative_error_percent=d["relative_error_percent"],
         held_out_relative_error_percent=d.get("held_out_relative_error_percent"),
+        held_out_with_own_values_percent=d.get("held_out_with_own_values_percent"),
         identifiable=d["identifiable"],
         findings=tuple(Finding(f["level"], f["text"], f.get("record")) for f in d["findings"]),
         bands=tuple(_band(b) for b in d["bands"]),

@@ -233,6 +233,9 @@ def accuracy_line(document: Mapping[str, Any]) -> str:
     held_out = document.get("held_out_relative_error_percent")
     if held_out is not None:
         text += f", and {percent(held_out)} on records that were not fitted"
+    own = document.get("held_out_with_own_values_percent")
+    if own is not None:
+        text += f" ({percent(own)} with what every test has of its own as they show it)"
     return text + "."
 
 
