@@ -56,16 +56,18 @@ def constants_page() -> str:
         "",
     ]
     for package in PACKAGES:
-        found: dict[str, list[Constant]] = {}
-        for constant in constants(package):
-            found.setdefault(constant.module, []).append(constant)
         listed += [f"## {package}", ""]
-        listed += ["| module | constant | value | what it is |", "|---|---|---|---|"]
-        for module, group in found.items():
-            listed += [
-                f"| `{module}` | `{c.name}` | {_code(c.value)} | {_prose(c.said)} |"
-                for c in group
-            ]
+        folder = module = ""
+        for constant in constants(package):
+            where = constant.module.rpartition("/")[0]
+            if where != folder:
+                folder = where
+                listed += ["", f"### {folder}"]
+            if constant.module != module:
+                module = constant.module
+                listed += ["", f"**`{module}`**", ""]
+            said = f": {_prose(constant.said)}" if constant.said else ""
+            listed.append(f"- `{constant.name}` = {_code(constant.value)}{said}")
         listed.append("")
     return "\n".join(listed)
 
@@ -136,13 +138,13 @@ def _above(comments: dict[int, tuple[str, bool]], line: int) -> str:
 
 
 def _prose(text: str) -> str:
-    """Return a comment as a cell that shows it as it stands; names between backticks stay code."""
+    """Return a comment as text that shows as it stands; names between backticks stay code."""
     parts = text.split("`")
     shown = [p if i % 2 else re.sub(r"([\\*_<>$\[\]^~])", r"\\\1", p) for i, p in enumerate(parts)]
-    return "`".join(shown).replace("|", "\\|")
+    return "`".join(shown)
 
 
 def _code(value: str) -> str:
-    """Return a value as a cell, a long table cut off."""
+    """Return a value, a long table cut off."""
     short = value if len(value) <= _LONGEST else value[:_LONGEST] + "…"
-    return f"`{short}`".replace("|", "\\|")
+    return f"`{short}`"

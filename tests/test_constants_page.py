@@ -34,8 +34,13 @@ def pages():
 @pytest.fixture(scope="module")
 def listed(pages):
     """Return the constants on the page: file and name."""
-    rows = re.findall(r"^\| `([^`]+)` \| `([^`]+)` \| `[^`]+` \|", pages.constants_page(), re.M)
-    return {(module, name) for module, names in rows for name in names.split(", ")}
+    told, module = set(), ""
+    for line in pages.constants_page().splitlines():
+        if at := re.fullmatch(r"\*\*`([^`]+)`\*\*", line):
+            module = at[1]
+        elif row := re.match(r"- `([^`]+)` = `[^`]+`", line):
+            told |= {(module, name) for name in row[1].split(", ")}
+    return told
 
 
 def numbers_of(module):
