@@ -12,6 +12,7 @@ from markupsafe import Markup, escape
 
 from discover.shape_words import shape
 from discover.words import percent, quantity, short_name, significant
+from models.terms.between_tests import ONLY
 
 Entry = Mapping[str, Any]
 
@@ -27,6 +28,7 @@ def equation(terms: Sequence[Entry]) -> Markup:
     """Return the force as a sum of terms with their numbers, in SI.
 
     Displacement, velocity and acceleration are x, v and a; s is a curve of friction from -1 to 1.
+    Terms of which each test has its own are one, by name.
 
     Parameters
     ----------
@@ -37,18 +39,29 @@ def equation(terms: Sequence[Entry]) -> Markup:
     --------
     >>> str(equation([{"id": "stiffness", "coefficient": -20.0}])).count("<math>")
     2
+    >>> own = [{"id": "force-offset", "coefficient": 3.0, "only": k} for k in (1.0, 2.0)]
+    >>> str(equation(own)).count("force offset of each test")
+    1
     """
     parts = [_math(Markup('<mi>F</mi><mo form="infix">=</mo>'))]
     changes = []
+    own = dict.fromkeys(str(t["id"]) for t in terms if _of_one_test(t))
     for term in terms:
+        if _of_one_test(term):
+            continue
         if term["id"] in _CHANGES:
             changes.append(term)
             continue
         first = len(parts) == 1
         parts.append(_math(_signed(float(term["coefficient"]), first=first) + _factor(term)))
+    for name in own:
+        if name not in _CHANGES:
+            sign = Markup('<mo form="infix">+</mo>' if len(parts) > 1 else "")
+            parts.append(_math(sign + _each(name)))
     if len(parts) == 1:
         parts.append(_math(Markup("<mn>0</mn>")))
     said = [_CHANGES[c["id"]](float(c["coefficient"])) for c in changes]
+    said += [f"{short_name(name)} of each test" for name in own if name in _CHANGES]
     text = Markup(", ").join(escape(s) for s in said)
     return Markup(" ").join(parts) + (Markup(", ") + text if said else Markup(""))
 
@@ -74,6 +87,14 @@ def symbols(terms: Sequence[Entry]) -> str:
     if curved or "stribeck-friction" in ids:
         told.append("s(x, v) is the curve, from −1 to 1, by which friction reverses.")
     return " ".join(told)
+
+
+def _of_one_test(term: Entry) -> bool:
+    return float(term.get(ONLY.name, 0.0)) > 0.0
+
+
+def _each(name: str) -> Markup:
+    return Markup("<mtext>{} of each test</mtext>").format(short_name(name))
 
 
 def _math(inside: Markup) -> Markup:

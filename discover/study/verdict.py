@@ -25,6 +25,7 @@ from discover.words import (
     zero_possible,
 )
 from models.cores import FRICTION, OTHER
+from models.terms.between_tests import ONLY
 
 SURE = 0.8
 """Probability under which a structure is not stated: whoever acts on it is wrong once in five."""
@@ -235,7 +236,10 @@ def accuracy_line(document: Mapping[str, Any]) -> str:
         text += f", and {percent(held_out)} on records that were not fitted"
     own = document.get("held_out_with_own_values_percent")
     if own is not None:
-        text += f" ({percent(own)} with what every test has of its own as they show it)"
+        names = dict.fromkeys(
+            short_name(e["id"]) for b in document["bands"] for e in b["extras"] if e.get(ONLY.name)
+        )
+        text += f" ({percent(own)} once a {listed(names)} of their own is fitted to them)"
     return text + "."
 
 

@@ -74,5 +74,5 @@ def test_a_study_says_what_the_law_leaves_beside_the_offset_that_it_can_not_know
     assert [e.term.fitted.id for e in study.bands[0].extras][:1] == ["force-offset"]
     assert study.held_out_with_own_values_percent == pytest.approx(2.0, abs=0.15)
     assert study.held_out_relative_error_percent > 1.5 * study.held_out_with_own_values_percent
-    assert "with what every test has of its own as they show it" in study.summary()
+    assert "% once a force offset of their own is fitted to them)" in study.summary()
     assert "held_out_with_own_values_percent" in study.to_dict()
