@@ -16,7 +16,7 @@ test: $(VENV)/.installed-dev ## all tests and doctests but the sweeps
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m 'not sweep'
 
 sweep: $(VENV)/.installed-dev ## a part of make calibration and make blind, held to their bars, and what takes long alone
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m sweep tests # a study that tests share is made once
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder -m sweep tests # a study that tests share is made once
 
 check: $(VENV)/.installed-dev ## style, types and layers
 	$(BIN)/ruff check .

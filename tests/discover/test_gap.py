@@ -200,18 +200,18 @@ def mounted():
 
 
 @pytest.mark.sweep
-def test_the_gap_of_a_spring_in_series_closes_and_is_not_named_play(mounted):
-    first = mounted.rounds[0]
-    assert "backlash" not in {first.effect, *dict(first.alternatives)}
+def test_the_gap_of_a_rubber_mount_closes_with_one_effect(mounted):
+    assert len(mounted.rounds) == 1
     assert mounted.final_gap_percent < 1.15 * mounted.noise_percent
 
 
 @pytest.mark.sweep
 @pytest.mark.xfail(
-    reason="rubber's loss is alike at all speeds, the spring's damper is not: cavitation errs less",
+    reason="rubber's loss is alike at all speeds, the spring's damper is not: play with soft flanks"
+    " (75 %) or cavitation errs less",
     strict=True,
 )
-def test_the_gap_of_a_spring_in_series_closes_with_one_effect(mounted):
+def test_a_rubber_mount_is_named_a_spring_in_series(mounted):
     first = mounted.rounds[0]
     assert "series-compliance" in {first.effect, *dict(first.alternatives)}
 

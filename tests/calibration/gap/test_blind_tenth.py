@@ -24,14 +24,8 @@ def part(kind, place):
 
 @pytest.mark.parametrize(
     ("kind", "place"),
-    [
-        ("first", 2),
-        ("second", 0),
-        pytest.param("third", 1, marks=pytest.mark.xfail(
-            strict=True, reason="of seven effects five are stated: two are unknown at 0.98 and 0.99"
-        )),
-    ],
-)  # fmt: skip
+    [("first", 2), ("second", 0), ("third", 1)],
+)
 def test_effects_are_named_and_close_the_gap(kind, place):
     bar = bars(kind)
     found = [o for o in outcomes(part(kind, place)) if o.named[0] != IMPOSSIBLE]
