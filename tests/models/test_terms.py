@@ -106,7 +106,7 @@ def test_units_are_those_of_the_formula(identifier):
     for fitted in model.terms:
         parameters = {p.name: p.unit for p in fitted.term.parameters}
         shape = {k: v * factor(parameters[k], mass, length, time) for k, v in fitted.shape.items()}
-        unit = fitted.unit.replace("rad", "").replace(" ", "*")  # a space before (…)^p is read so too
+        unit = fitted.unit.replace("rad", "").replace(" ", "*")  # N (s/m)^p
         scaled.append(
             FittedTerm(fitted.id, fitted.coefficient * factor(unit, mass, length, time), shape)
         )
