@@ -235,10 +235,10 @@ def accuracy_line(document: Mapping[str, Any]) -> str:
     if held_out is not None:
         text += f", and {percent(held_out)} on records that were not fitted"
     own = document.get("held_out_with_own_values_percent")
-    if own is not None:
-        names = dict.fromkeys(
-            short_name(e["id"]) for b in document["bands"] for e in b["extras"] if e.get(ONLY.name)
-        )
+    names = dict.fromkeys(
+        short_name(e["id"]) for b in document["bands"] for e in b["extras"] if e.get(ONLY.name)
+    )
+    if own is not None and names:
         text += f" ({percent(own)} once a {listed(names)} of their own is fitted to them)"
     return text + "."
 
