@@ -13,8 +13,6 @@ from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.terms.between_tests import ONLY
 
-_STEP = 1e-3  # of a coefficient, for its slope
-
 
 def with_own_values(model: ForceModel, rows: RecordRows) -> ForceModel:
     """Return a model with what every test has of its own as a record shows it.
@@ -53,4 +51,4 @@ def with_own_values(model: ForceModel, rows: RecordRows) -> ForceModel:
     start = np.array([here.terms[i].coefficient for i in places])
     if not np.all(np.isfinite(left(start))):  # a joint may shake itself apart
         return model
-    return at(least_squares(left, start, x_scale="jac", diff_step=[_STEP]).x)
+    return at(least_squares(left, start, x_scale="jac").x)

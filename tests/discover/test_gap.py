@@ -206,6 +206,13 @@ def test_the_gap_of_a_rubber_mount_closes_with_one_effect(mounted):
 
 
 @pytest.mark.sweep
+@pytest.mark.xfail(strict=True, reason="soft flanks leave least of it: play 75 %, cavitation 25 %")
+def test_a_rubber_mount_is_not_named_play(mounted):
+    first = mounted.rounds[0]
+    assert "backlash" not in {first.effect, *dict(first.alternatives)}
+
+
+@pytest.mark.sweep
 @pytest.mark.xfail(
     reason="rubber's loss is alike at all speeds, the spring's damper is not: play with soft flanks"
     " (75 %) or cavitation errs less",
