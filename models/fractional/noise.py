@@ -128,8 +128,33 @@ def above_noise(powers: Array, noise: float) -> Array:
     >>> above_noise(np.array([4.0, 6.0]), 1.0).round(3)
     array([1.414, 0.   ])
     """
-    gains = np.array([math.comb(2 * d, d) for d in range(1, powers.size + 1)])
-    return np.asarray(np.sqrt(np.maximum(powers - noise**2 * gains, 0.0)))
+    return np.asarray(np.sqrt(np.maximum(powers - noise**2 * _gains(powers.size), 0.0)))
+
+
+def whole_noise(powers: Array) -> float:
+    """Return the rms noise of a whole record, however it is spread over it.
+
+    Parameters
+    ----------
+    powers : ndarray, shape (D,)
+        Mean squares of the first to D-th differences of neighbouring samples.
+
+    Returns
+    -------
+    float
+        Standard deviation; the least estimate over d, as the motion's share falls with d.
+
+    Examples
+    --------
+    >>> whole_noise(np.array([4.0, 6.0]))
+    1.0
+    """
+    return math.sqrt(float(np.min(powers / _gains(powers.size))))
+
+
+def _gains(highest: int) -> Array:
+    """Mean squares of the first to highest differences of white noise of unit size."""
+    return np.array([float(math.comb(2 * d, d)) for d in range(1, highest + 1)])
 
 
 def _blocks(x: Array, samples: int) -> Array:

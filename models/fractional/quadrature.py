@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.fractional.differences import backward_difference, reach
-from models.fractional.noise import above_noise, difference_powers, roughness
+from models.fractional.noise import above_noise, difference_powers, roughness, whole_noise
 from models.fractional.orders import Array
 from models.fractional.start import Start
 from models.fractional.weights import BDF_STEPS, INTEGRAL_STEPS, convolution_weights
@@ -27,7 +27,7 @@ _RESOLVED = 0.1
 # Times the noise's error, below which truncation is no reason for a shorter stride: some of what
 # passes for it is noise that is uneven.
 _NOISY = 10.0
-# Motion is what stands above so many times the noise, which may be uneven.
+# Motion is what stands above so many times the noise of the whole record.
 _PLAINLY = 4.0
 # Points that a stride leaves of a record, at least.
 _RUN = 16
@@ -149,6 +149,8 @@ class _Measured:
     """rms about the mean."""
     noise: float
     """Standard deviation of the white part."""
+    uneven: float
+    """Its rms over the whole record, where it is larger in some parts than in others."""
     powers: Array
     """(8,) mean squares of the differences of neighbouring samples."""
 
@@ -157,7 +159,8 @@ def _measure(row: Array, starts: Sequence[Start]) -> _Measured:
     rough = roughness(row)
     pieces = np.split(row, [start.first for start in starts[1:]])
     powers = difference_powers(pieces, highest=_HIGHEST, stride=1)
-    return _Measured(pieces, rough.size, rough.noise, powers)
+    uneven = max(rough.noise, whole_noise(powers))
+    return _Measured(pieces, rough.size, rough.noise, uneven, powers)
 
 
 def _errors(measured: _Measured, orders: Array, stride: int) -> Array:
@@ -168,7 +171,7 @@ def _errors(measured: _Measured, orders: Array, stride: int) -> Array:
     differences = above_noise(powers, measured.noise)
     seen = _between(np.concatenate([[measured.size], differences]), orders)
     # A pulse may lie between the points of a long stride: it makes no more than this.
-    plain = above_noise(measured.powers, _PLAINLY * measured.noise)
+    plain = above_noise(measured.powers, _PLAINLY * measured.uneven)
     growth = float(stride) ** np.arange(1, _HIGHEST + 1)
     differences = np.maximum(differences, plain * growth)
     most = _between(np.concatenate([[measured.size], differences]), orders)

@@ -75,9 +75,11 @@ def fit_start(x: Array) -> Start:
     coefficients = np.zeros(DEGREE + 1)
     best, kept = np.inf, x.size
     floor = 1e-16 * float(np.max(np.abs(x[:LONGEST])))
+    # A level would make the fit itself round at its size, alike in neighbours.
+    moved = x[:LONGEST] - x[0]
     for width in _widths(min(x.size, LONGEST)):
         nodes, projector, basis, monomials = _fit(width)
-        window = x[nodes]
+        window = moved[nodes]
         modes = projector @ window
         residual = window - basis @ modes
         spare = max(nodes.size - modes.size, 1)

@@ -63,7 +63,10 @@ def test_error_does_not_grow_with_the_sampling_rate(order, count):
 
 
 @pytest.mark.parametrize("order", ORDERS)
-@pytest.mark.parametrize("start", [(3.0, 0.0, 0.0), (0.0, -2.0, 0.0), (0.0, 0.0, 1.0), (3, -2, 1)])
+@pytest.mark.parametrize(
+    "start",
+    [(0, 0, 0), (1.0, 0.0, 0.0), (3.0, 0.0, 0.0), (0.0, -2.0, 0.0), (0.0, 0.0, 1.0), (3, -2, 1)],
+)
 def test_start_with_position_velocity_acceleration(order, start):
     # a + v t + c t^2 on top of a growing sine, that starts with none of them.
     count = 50_000
