@@ -144,6 +144,18 @@ def probability(value: float | None) -> str:
 _MOST_DIGITS = 10
 
 
+def odds(nats: float) -> str:
+    """Return a log Bayes factor as odds.
+
+    Examples
+    --------
+    >>> [odds(n) for n in (0.0, 0.6, 3.0, 5.0, 400.0)]
+    ['1 to 1', '1.8 to 1', '20 to 1', '150 to 1', 'over 1000 to 1']
+    """
+    most = math.log(1000.0)
+    return "over 1000 to 1" if nats > most else f"{significant(math.exp(nats), 2)} to 1"
+
+
 def interval(ends: Sequence[float | None] | None, digits: int = 3) -> str:
     """Return an interval in words, None for an end that is open; "" where there is none.
 

@@ -16,6 +16,7 @@ from discover.data_check.conditioning import joint_rank
 from discover.data_check.nominal import TELLING, Structure, contains, structures
 from discover.data_check.plan import Plan
 from discover.data_check.result import ExpectedGap, Inseparable, Pair
+from discover.words import odds
 
 _SAME_FREQUENCY = 0.02  # of it: frequencies that differ less count as one
 
@@ -70,6 +71,6 @@ def _why(pair: Pair, plan: Plan) -> str:
             " several frequencies"
         )
     return (
-        f"at their noise {records} would speak with only {pair.nats:.2g} nats for the right one of"
-        f" {first} and {second}, and {TELLING:.1f} are needed to rule one out at 5 %"
+        f"at their noise {records} would give the right one of {first} and {second} odds of only"
+        f" {odds(pair.nats)}, and {odds(TELLING)} are needed to rule one out at 5 %"
     )

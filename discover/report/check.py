@@ -14,7 +14,7 @@ from discover.figure_data import PlanFigureData
 from discover.plots.plan_map import plan_map
 from discover.plots.separation_matrix import nats_text, separation_matrix
 from discover.report.environment import render
-from discover.words import counted, kind_name, listed, named_line, percent, significant
+from discover.words import counted, kind_name, listed, named_line, odds, percent, significant
 
 
 def check_lines(document: Mapping[str, Any], *, campaign: str) -> list[str]:
@@ -122,12 +122,12 @@ def next_step(document: Mapping[str, Any], *, campaign: str) -> str:
     pair = listed(test["structures"], last="from")
     if nats < TELLING:
         return (
-            f"{place}, the best one more within limits; {pair} would then be told by"
-            f" {nats_text(nats)} nats only{_noise_needed(nats)}. {as_it_is}"
+            f"{place}, the best one more within limits; {pair} would then be told with odds of"
+            f" {odds(nats)} only{_noise_needed(nats)}. {as_it_is}"
         )
     return (
-        f"{place}: what can't be told apart now would then differ by {nats_text(nats)} nats or"
-        f" more, and {significant(TELLING, 2)} are needed. Then run {again} again. {as_it_is}"
+        f"{place}: what can't be told apart now would then be told with odds of {odds(nats)} at"
+        f" least, and {odds(TELLING)} are needed. Then run {again} again. {as_it_is}"
     )
 
 

@@ -22,7 +22,7 @@ from discover.study.verdict import (
     structure_name,
     verdict_lines,
 )
-from discover.words import coordinate_name, named_line, remainder_text, significant
+from discover.words import coordinate_name, named_line, odds, remainder_text, significant
 
 _RECORD_COLUMNS = (
     "file", "kind", "held_out", "frequency", "amplitude", "band", "structure", "dean_paper",
@@ -162,6 +162,6 @@ def _next(document: Mapping[str, Any]) -> str:
     purpose = next_purpose(test)
     if purpose:
         text += f". Of all tests within the limits it best {purpose}"
-    if test.get("gain") is not None:
-        text += f" (expected gain {significant(test['gain'], 3)} nats)"
+    if test.get("gain") is not None and len(set(test["separates"])) > 1:
+        text += f" (expected odds of the right one: {odds(test['gain'])})"
     return text + ". Then run the command below on the campaign with that record added."

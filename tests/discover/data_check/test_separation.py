@@ -81,7 +81,7 @@ def test_the_gap_equals_least_squares_on_the_samples_themselves(wide):
 
 def test_much_noise_leaves_turbulent_and_laminar_friction_open():
     pairs = open_pairs(planned(WIDE[1:3], noise=0.3))
-    assert "speak with only" in pairs["IOIM-laminar", "IOIM-turbulent"].why
+    assert "odds of only" in pairs["IOIM-laminar", "IOIM-turbulent"].why
 
 
 def test_a_plan_of_one_amplitude_can_not_decide_the_dean_check():
