@@ -73,7 +73,7 @@ def sample_gap_document():
     told = {k: v for k, v in term.items() if k != "interval"}
     return {
         "schema": "inerter.gap/1",
-        "version": "0.1.0",
+        "version": "1.0.0",
         "seed": 0,
         "campaign": {"title": "Device [12], friction hidden", "hash": "cd" * 32},
         "baseline": {"terms": [told], "fitted": True},

@@ -129,7 +129,7 @@ def sample_document():
     files = [[r.file for r in data.records if r.band == k] for k in (0, 1)]
     return {
         "schema": "inerter.study/1",
-        "version": "0.1.0",
+        "version": "1.0.0",
         "seed": 0,
         "campaign": {"title": "Device [12], sine tests", "hash": "ab" * 32},
         "coordinate": "dean",
