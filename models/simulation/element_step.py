@@ -26,7 +26,7 @@ from models.simulation.elements import (
 
 _ITERATIONS = 80
 _LINEAR = 1e-6  # of a transition speed, below which friction over it is a straight line
-_JIT = {"cache": True, "error_model": "numpy", "inline": "always"}
+_JIT = {"cache": True, "error_model": "numpy", "forceinline": True}
 
 
 @njit(**_JIT)
