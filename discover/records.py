@@ -23,6 +23,7 @@ GAP = 1.5
 """Times the usual step, from which a step is a gap in the record."""
 EVEN = 1e-3
 """Of a step: what times may be off a grid of equal ones."""
+_CLOCK = float(np.finfo(np.float64).eps) ** -0.25  # of its length: how far from zero a record starts
 
 _NO_INPUTS: Mapping[str, Array] = MappingProxyType({})
 _COLUMNS = ("force", "displacement", "velocity", "acceleration", "temperature")
@@ -93,7 +94,8 @@ class Record:
     file: str
     """Name as in ``campaign.toml``."""
     time: Array
-    """(N,) s, strictly increasing."""
+    """(N,) s, strictly increasing. A clock's, which starts so far from zero that sums of its squares
+    would lose half of their digits, counts from the first sample."""
     force: Array
     """(N,) N."""
     displacement: Array | None = None
@@ -130,6 +132,10 @@ class Record:
         size = self.time.size
         if size > 1 and not np.diff(self.time).min() > 0.0:
             raise InputError("time", expected="rising", found="steps back or none", where=self.file)
+        if size > 1 and abs(self.time[0]) > _CLOCK * (self.time[-1] - self.time[0]):
+            counted = self.time - self.time[0]
+            counted.flags.writeable = False
+            object.__setattr__(self, "time", counted)
 
     def _column(self, name: str) -> Array:
         """Return a column that nobody can change through the record."""

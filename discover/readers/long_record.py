@@ -55,9 +55,9 @@ def read_record_of_any_length(
             f" which takes about {_MEMORY * rows / 1e9:.2g} GB; [[records]] range reads less of it"
         )
         return record, [*findings, Finding("warning", text, file)], read
-    pieces = partial(
-        _pieces, source, names=names, units=units, step=entry.step, where=file
-    )
+    pieces = partial(_pieces, source, names=names, units=units, step=entry.step, where=file)
+    if record.time[0] == 0.0:  # the record's times may count from its first sample
+        pieces = partial(pieces, origin=float(next(pieces()).time[0]))
     text = (
         f"it has {rows:,} samples, read in pieces: its frequency, rows and errors are of all of"
         f" them; its kind, what is odd in it, its noise and its pictures of the first {FIRST:,}"
@@ -140,8 +140,9 @@ def _pieces(
     units: Mapping[str, str],
     step: float | None,
     where: str,
+    origin: float = 0.0,
 ) -> Iterator[Piece]:
-    """Yield the pieces of a record in SI.
+    """Yield the pieces of a record in SI; times count from `origin` (s).
 
     Raises
     ------
@@ -172,5 +173,6 @@ def _pieces(
                 "time", expected="rising", found=f"{time[row]:.9g} s after one that is not less",
                 where=f"{where} {here.place(row)}",
             )
-        yield Piece(time, read.values.get("displacement", np.empty(0)), read.values["force"])
+        displacement = read.values.get("displacement", np.empty(0))
+        yield Piece(time - origin, displacement, read.values["force"])
         begin, before = begin + time.size, float(time[-1])

@@ -51,6 +51,30 @@ def test_an_even_record_is_itself():
     assert np.ptp(np.diff(even.time)) < 1e-12
 
 
+@pytest.mark.parametrize("clock", [-3600.0, 0.9 * 86_400.0, 1_795_823_998.0])
+def test_times_of_a_clock_tell_the_same_as_times_from_zero(clock):
+    rng = np.random.default_rng(1)
+    time = np.arange(3000) / 1000.0
+    x = 2e-3 * np.sin(9.0 * time)
+    force = 900.0 * 9.0 * 2e-3 * np.cos(9.0 * time) + 0.05 * rng.standard_normal(3000)
+    from_zero = observe(Record("zero.csv", time, force, x))
+    by_clock = observe(Record("clock.csv", time + clock, force, x))
+    assert by_clock.frequency == pytest.approx(from_zero.frequency, rel=1e-7)
+    assert by_clock.time[0] == (0.0 if clock > 0.0 else clock)
+    since = by_clock.time - by_clock.time[0]
+    np.testing.assert_allclose(since, from_zero.time, atol=3e-7)
+    lines, expected = by_clock.windows[0].force, from_zero.windows[0].force
+    np.testing.assert_allclose(lines, expected, atol=1e-5 * np.abs(expected).max())
+    powers = [o.windows[0].noise_power for o in (by_clock, from_zero)]
+    assert powers[0] == pytest.approx(powers[1], rel=1e-2)
+
+
+def test_times_that_start_near_zero_stay():
+    time = 2.0 + np.arange(300) / 100.0
+    x = np.sin(9.0 * time)
+    np.testing.assert_array_equal(Record("r.csv", time, x.copy(), x).time, time)
+
+
 @pytest.mark.parametrize("time", [np.r_[0.0, np.arange(99.0)], np.arange(100.0)[::-1]])
 def test_times_that_do_not_rise_are_refused(time):
     x = np.sin(0.3 * np.arange(100.0))

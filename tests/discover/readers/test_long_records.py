@@ -141,6 +141,19 @@ def test_time_stamps_count_from_the_first(tmp_path):
     assert last.time[-1] == pytest.approx((SIZE - 1) / RATE, abs=1e-9)
 
 
+def test_times_of_a_clock_count_from_the_first_sample(tmp_path):
+    columns = table()
+    (from_zero,) = read_campaign(written(tmp_path, "parquet", columns)).records
+    columns["time [s]"] = columns["time [s]"] + 1_795_823_998.0
+    (by_clock,) = read_campaign(written(tmp_path, "parquet", columns)).records
+    assert by_clock.time[0] == 0.0
+    pieces = [p.time for p in by_clock.long.pieces()]
+    np.testing.assert_allclose(np.concatenate(pieces), np.arange(SIZE) / RATE, atol=5e-7)
+    observed = observe(by_clock), observe(from_zero)
+    assert observed[0].samples > 0.99 * SIZE
+    assert observed[0].frequency == pytest.approx(observed[1].frequency, rel=1e-8)
+
+
 def test_times_are_made_of_a_sampling_rate_from_piece_to_piece(tmp_path):
     columns = table()
     del columns["time [s]"]
