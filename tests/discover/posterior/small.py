@@ -6,9 +6,11 @@ import numpy as np
 
 from discover.motion_fit import observe
 from discover.posterior.assess import Assessor
-from discover.posterior.model import Evaluator
+from discover.posterior.model import Composite, Evaluator
 from discover.posterior.setup import space_of
+from discover.records import Record
 from discover.rows import record_rows
+from models.constitutive import FittedTerm, ForceModel
 from models.terms import TERMS
 from tests.discover.gap_data import PLAN, record
 
@@ -26,12 +28,44 @@ def rows_of(law, plan=PLAN, *, noise=0.01, seed=0, cycles=5):
     ]
 
 
-def assessor_of(rows, *, friction=True, path=True):
+def random_rows():
+    """Return a long record of random motion, whose units keep some directions of their rows."""
+    rng = np.random.default_rng(1)
+    time = np.arange(12000) / 200.0
+    omega = 2.0 * np.pi * np.sort(rng.uniform(0.3, 8.0, 60))[:, None]
+    angle = omega * time + rng.uniform(0.0, 6.0, omega.shape)
+    x, v, a = (
+        np.sum(1e-3 * omega**k * np.minimum(1.0, 3.0 / omega) * turned, axis=0)
+        for k, turned in enumerate((np.sin(angle), np.cos(angle), -np.sin(angle)))
+    )
+    force = 120.0 * a + 800.0 * v
+    force = force + 0.01 * np.std(force) * rng.standard_normal(time.size)
+    return record_rows(observe(Record("random.csv", time, force, x)))
+
+
+def assessor_of(rows, *, friction=True, named=True):
     """Return what assesses models of these rows, with friction's curves or without."""
     space, curve = space_of(rows, TERMS["coulomb-friction"])
-    return Assessor(
-        space, Evaluator(space.sheet, space.scales), curve if friction else None, path=path
+    evaluator = Evaluator(space.sheet, space.scales)
+    return Assessor(space, evaluator, curve if friction else None, named)
+
+
+def model_of(**coefficients):
+    """Return a model of terms in all units; an underscore stands for the hyphen of an id."""
+    return Composite.of(
+        ForceModel(tuple(FittedTerm(i.replace("_", "-"), c) for i, c in coefficients.items()))
     )
+
+
+def of_formula(rows, formula):
+    """Return the rows (U, R) of a formula of t, x, v, a on each sine test's steady cycle."""
+    found = []
+    for r in rows:
+        m = r.cycle
+        found.append(
+            formula(m.time, m.displacement, m.velocity, m.acceleration) @ r.cycle_rows
+        )
+    return np.array(found)
 
 
 def flat(columns):
@@ -56,6 +90,18 @@ def dense(space, sizes):
             blocks[i, :, j] += sizes.remainder**2 * alike[i, j] * shared
         blocks[i, :, i] += sizes.friction**2 * space.own[i].T @ space.own[i]
     return whole
+
+
+def widened(covariance, columns, spread):
+    """Return the covariance of rows with columns (U, K, R) of normal coefficients."""
+    matrix = flat(columns)
+    return covariance + (matrix * np.square(spread)) @ matrix.T
+
+
+def whole_force(columns, target):
+    """Return the coefficients (K,) at which columns (U, K, R) have the force's size in the mean."""
+    share = np.sum(columns**2, axis=2) / np.sum(target**2, axis=1)[:, None]
+    return 1.0 / np.sqrt(share.mean(axis=0))
 
 
 def log_density(force, covariance):

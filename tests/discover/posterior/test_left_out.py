@@ -1,10 +1,19 @@
 """Which model predicts records that are left out best, and how surely."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from discover.posterior.left_out import is_less, left_out, predicts_best
+from discover.posterior.covariance import Sizes
+from discover.posterior.left_out import (
+    is_less,
+    is_needed,
+    left_out,
+    predicts_best,
+    predicts_better,
+)
 from discover.posterior.model import Composite
 from discover.records import Campaign, Record
 from discover.rows.columns import force_columns
@@ -12,6 +21,15 @@ from discover.study import StudyOptions
 from discover.study.prepare import prepare
 from models.constitutive import FittedTerm, ForceModel
 from tests.discover.exact import campaign
+from tests.discover.posterior.small import (
+    APART,
+    assessor_of,
+    dense,
+    model_of,
+    of_formula,
+    rows_of,
+    whole_force,
+)
 
 EQUAL = np.zeros(2)
 
@@ -119,3 +137,83 @@ def test_what_a_model_leaves_of_a_long_record_is_what_least_squares_on_all_its_r
     fitted, unseen = left_out(assessed.predicting)
     assert np.sum(fitted) == pytest.approx(float(missed @ missed / (force @ force)), rel=0.02)
     assert np.all(unseen >= 0.99 * fitted)
+
+
+DEVICE = model_of(inertia=100.0, viscous_damping=700.0)
+SPRUNG = DEVICE.plus(FittedTerm("stiffness", 1.0))
+
+
+def misfit(size, spring=3e3):
+    """Return a law of a device with a spring, and a third harmonic that no term has."""
+    def law(t, x, v, a):
+        phase = np.arctan2(v / np.abs(v).max(), x / np.abs(x).max())
+        return 120.0 * a + 800.0 * v + spring * x + size * np.cos(3.0 * phase)
+
+    return law
+
+
+def assessed_of(law, model=DEVICE):
+    assessor = assessor_of(rows_of(law, APART, cycles=3), friction=False)
+    return assessor.assess(model, assessor.space.start)
+
+
+@pytest.mark.parametrize(("spring", "held"), [(3e3, False), (4e4, True)])
+def test_each_record_is_predicted_by_least_squares_on_the_others(spring, held):
+    assessed = assessed_of(misfit(20.0, spring)).predicting
+    np.testing.assert_array_equal(assessed.local.held, [held, False])
+    space = assessed.space
+    sheet, sizes = space.sheet, assessed.place.sizes(space.own_unit)
+    columns = np.stack([of_formula(sheet.rows, f) for f in (lambda t, x, v, a: a,
+                                                            lambda t, x, v, a: v)], axis=1)
+    columns = columns[:, ~assessed.local.held]  # a coefficient at its limit stays there
+    spread = whole_force(columns, sheet.target)
+    own = dense(space, Sizes(np.sqrt(0.1) * sizes.remainder, sizes.loud, sizes.friction))
+    size = sheet.target.shape[1]
+
+    def errors(kept, unit):
+        gram, side = np.diag(spread**-2.0), 0.0
+        for u in kept:
+            here = slice(u * size, (u + 1) * size)
+            weighted = np.linalg.solve(own[here, here], columns[u].T)
+            gram, side = gram + columns[u] @ weighted, side + weighted.T @ sheet.target[u]
+        left = sheet.target[unit] - np.linalg.solve(gram, side) @ columns[unit]
+        scale = sheet.rows[unit].size
+        return np.sum((left / scale) ** 2) / np.sum((sheet.target[unit] / scale) ** 2)
+
+    every = range(len(sheet.units))
+    fitted, unseen = left_out(assessed)
+    np.testing.assert_allclose(fitted, [errors(every, u) for u in every], rtol=1e-3)
+    np.testing.assert_allclose(
+        unseen, [errors([o for o in every if o != u], u) for u in every], rtol=1e-3
+    )
+    assert np.all(unseen > fitted)
+
+
+@pytest.mark.parametrize("model", [DEVICE, SPRUNG])
+def test_what_no_term_has_is_not_used_to_predict(model):
+    """Beside a remainder too, what is left of a test is what the terms leave of it."""
+    assessed = assessed_of(misfit(20.0), model)
+    fitted, _ = left_out(assessed)
+    rows = assessed.space.sheet.rows
+    left = assessed.space.sheet.target - assessed.local.force
+    plain = [np.sum((d / r.size) ** 2) / np.sum((r.target / r.size) ** 2)
+             for d, r in zip(left, rows, strict=True)]  # fmt: skip
+    assert np.sum(fitted) == pytest.approx(np.sum(plain), rel=0.3)
+
+
+def test_a_model_with_the_term_that_is_missing_predicts_better_and_needs_it():
+    without, with_it = (assessed_of(misfit(20.0), m) for m in (DEVICE, SPRUNG))
+    better, worse = predicts_better(without, with_it), predicts_better(with_it, without)
+    assert (better, worse) == (True, False)
+    quiet = without.quiet, with_it.quiet
+    assert quiet == (False, False)
+    assert is_needed(without, with_it)
+
+
+def test_where_a_model_leaves_but_noise_evidence_tells_what_it_needs():
+    bare, sprung = assessed_of(misfit(0.0)), assessed_of(misfit(0.0), SPRUNG)
+    quiet = bare.quiet, sprung.quiet
+    assert quiet == (False, True)
+    more = replace(sprung, value=sprung.value - 5.0)
+    needed = is_needed(bare, sprung), is_needed(sprung, more), is_needed(more, sprung)
+    assert needed == (True, False, True)
