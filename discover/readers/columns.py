@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.readers.source import Source
-from discover.readers.units import LARGEST, SI_UNITS, check_unit, same_unit, to_si
+from discover.readers.units import LARGEST, SI_UNITS, check_unit, same_unit, to_si, turns_sign
 from models.checks import Array, InputError
 
 QUANTITIES = {
@@ -183,13 +183,18 @@ def missing_column(source: Source, quantity: str, wanted: str, *, instead: str =
 
 
 def _unit_of(source: Source, index: int, quantity: str, stated: str | None) -> str | None:
-    """Return a column's unit, checked; None where neither header nor ``[units]`` has it."""
+    """Return a column's unit, checked; None where neither header nor ``[units]`` has it.
+
+    ``[units]`` may turn the sign of what the header says, as "-1 kN" does beside kN.
+    """
     kind = QUANTITIES[quantity]
     header = source.headers[index]
     own = split_header(header)[1] or source.units.get(index)
     if own is None:
         return stated
     check_unit(own, kind, name=quantity, where=f"{source.name}, header {header!r}")
+    if stated is not None and turns_sign(own, stated, kind):
+        return stated
     if stated is not None and not same_unit(own, stated, kind):
         raise InputError(
             f"unit of {quantity}",

@@ -153,6 +153,18 @@ def same_unit(first: str, second: str, kind: str) -> bool:
     return bool(np.allclose(to_si(probe, first, kind), to_si(probe, second, kind), rtol=1e-12))
 
 
+def turns_sign(first: str, second: str, kind: str) -> bool:
+    """Return whether a checked unit is another one with the sign turned.
+
+    Examples
+    --------
+    >>> turns_sign("kN", "-1 kN", "force"), turns_sign("kN", "-1 N", "force")
+    (True, False)
+    """
+    probe = np.array([1.0, 2.0])
+    return bool(np.allclose(to_si(probe, first, kind), -to_si(probe, second, kind), rtol=1e-12))
+
+
 def to_si(values: Array, unit: str, kind: str) -> Array:
     """Return values in SI from a unit that `check_unit` has passed.
 

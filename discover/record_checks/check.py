@@ -173,7 +173,7 @@ def _signs(records: tuple[Record, ...]) -> list[Finding]:
         text = (
             "the work over closed loops is negative throughout: the force column has the wrong"
             " sign for the displacement's direction; multiply it by -1, as `force = \"-1 N\"` in"
-            " [units] of campaign.toml does"
+            " [units] of campaign.toml does (with the column's own unit for N)"
         )
         return [Finding("error", text)]
     text = (

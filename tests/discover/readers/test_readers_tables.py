@@ -145,6 +145,18 @@ def test_header_and_units_table_must_agree(tmp_path: Path) -> None:
         read_campaign(folder)
 
 
+def test_the_units_table_may_turn_the_sign_of_a_header_s_unit(tmp_path: Path) -> None:
+    for place, unit in enumerate(("kN", "kip")):
+        text = PLAIN.replace("[kN]", f"[{unit}]")
+        (plain,) = read_campaign(campaign(tmp_path / f"{place}a", text)).records
+        toml = f'[units]\nforce = "-1 {unit}"\n{ONE}'
+        (turned,) = read_campaign(campaign(tmp_path / f"{place}b", text, toml=toml)).records
+        np.testing.assert_array_equal(turned.force, -plain.force)
+        other = f'[units]\nforce = "-1 N"\n{ONE}'
+        with pytest.raises(InputError, match=rf"the same in \[units\] \(-1 N\).* got {unit}"):
+            read_campaign(campaign(tmp_path / f"{place}c", text, toml=other))
+
+
 def test_no_unit_anywhere_is_si_and_said(tmp_path: Path) -> None:
     si = "time,displacement,force\n" + rows(TIME, 1e-3 * DISPLACEMENT, 1e3 * FORCE)
     found = read_campaign(campaign(tmp_path / "c", si))
