@@ -116,9 +116,19 @@ def _effects_beside(band: Mapping[str, Any]) -> str:
     """Return what the device surely has beside its structure, by name: the same in all bands."""
     names = _names(e for e in band.get("extras", ()) if not zero_possible(e["interval"]))
     friction = band.get("friction") or {}
-    if "presliding_displacement" in friction:
+    if "presliding_displacement" in friction and _is_told(_frictions(band)):
         names.insert(0, "presliding")
     return f", with {listed(names)}" if names else ""
+
+
+def _frictions(band: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return a band's terms of friction: a curve may be several."""
+    return [t for t in band["terms"] if t["id"] == FRICTION]
+
+
+def _is_told(entries: Iterable[Mapping[str, Any]]) -> bool:
+    """Tell whether one of some terms is surely not zero."""
+    return any(not zero_possible(e.get("interval")) for e in entries)
 
 
 def _names(entries: Iterable[Mapping[str, Any]]) -> list[str]:
@@ -192,12 +202,17 @@ def _extra(group: Sequence[Mapping[str, Any]]) -> str:
 def friction_text(band: Mapping[str, Any]) -> str:
     """Return a band's friction in words: how much, how it reverses, how records differ.
 
-    It is "" without friction: of none there is no way in which it reverses.
+    It is "" without friction: of none there is no way in which it reverses. Nor is any told of
+    one that may be zero.
     """
-    friction = band.get("friction")
-    size = sum(t["coefficient"] for t in band["terms"] if t["id"] == FRICTION)
+    friction, own = band.get("friction"), _frictions(band)
+    size = sum(t["coefficient"] for t in own)
     if not friction or not size:
         return ""
+    if not _is_told(own):
+        highs = [t["interval"][1] for t in own]
+        most = "" if None in highs else f", at most {significant(sum(highs), 3)} N"
+        return f"not told from zero{most}"
     text = f"{significant(size, 3)} N, {friction['curve']}"
     if "presliding_displacement" in friction or "transition_speed" in friction:
         pair = ("a displacement", "a speed")

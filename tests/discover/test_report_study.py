@@ -217,6 +217,18 @@ def test_what_may_as_well_be_nothing_is_possible_only_and_not_in_the_headline():
     assert "Beside it: possibly stiffness" in "".join(verdict_lines(document))
 
 
+def test_how_friction_reverses_is_not_told_of_friction_that_may_be_none():
+    document = sample_document()
+    for band in document["bands"]:
+        for term in band["terms"]:
+            if term["id"] == "coulomb-friction":
+                term["interval"] = [0.0, 0.3]
+    assert "presliding" not in headline(document)
+    lines = "\n".join(verdict_lines(document))
+    assert "Friction: not told from zero, at most 0.3 N." in lines
+    assert "slides" not in lines
+
+
 @pytest.mark.parametrize("verdict", ["consistent", "contradicted", "undetermined", "no-boundary"])
 def test_dean_line_leads_with_the_verdict(verdict):
     document = sample_document()
