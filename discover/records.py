@@ -23,7 +23,7 @@ GAP = 1.5
 """Times the usual step, from which a step is a gap in the record."""
 EVEN = 1e-3
 """Of a step: what times may be off a grid of equal ones."""
-_CLOCK = float(np.finfo(np.float64).eps) ** -0.25  # of its length: how far from zero a record starts
+_CLOCK = float(np.finfo(np.float64).eps) ** -0.25  # of a record's length
 
 _NO_INPUTS: Mapping[str, Array] = MappingProxyType({})
 _COLUMNS = ("force", "displacement", "velocity", "acceleration", "temperature")
@@ -94,8 +94,8 @@ class Record:
     file: str
     """Name as in ``campaign.toml``."""
     time: Array
-    """(N,) s, strictly increasing. A clock's, which starts so far from zero that sums of its squares
-    would lose half of their digits, counts from the first sample."""
+    """(N,) s, strictly increasing. A clock's, which starts so far from zero that sums of its
+    squares would lose half of their digits, counts from the first sample."""
     force: Array
     """(N,) N."""
     displacement: Array | None = None

@@ -139,8 +139,7 @@ def found(device: Device) -> Found:
         return now
     best, ends = now, list[Found]()
     starts = {b.bands: b for b in (now.banded, now.fewer[0])}
-    others = [_other_family(now)] if now.banded.bands == 1 else []  # bands may differ in family
-    for start in (*starts.values(), *others):
+    for start in (*starts.values(), _other_family(now)):
         way = replace(now, banded=start)
         for _ in range(MOST):
             more = _with_one_more(way)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -27,7 +27,7 @@ _POSSIBLE = 0.05
 """Probability from which it may be that no more is left."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Assessed:
     """A model with its evidence."""
 
@@ -46,8 +46,13 @@ class Assessed:
     space: Space
     """Of the records, friction's curve as the model's sensors pass it on."""
 
-    assessor: Assessor = field(repr=False)
+    assessor: Assessor
     """By which it is."""
+
+    def __repr__(self) -> str:
+        """Return the model's terms and its log evidence."""
+        terms = ", ".join(p.fitted.id for p in self.model.terms)
+        return f"<Assessed {terms}: {self.value:.1f} nats at {self.place.powers}>"
 
     @property
     def model(self) -> Composite:

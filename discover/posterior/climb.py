@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -83,6 +83,13 @@ class Place:
         return Place(tuple((p + q) // 2 for p, q in zip(self.powers, other.powers, strict=True)))
 
     @property
+    def around(self) -> list[Place]:
+        """Return places with remainders and independent errors of all sizes, from none to all."""
+        sizes = range(_LEAST, _MOST + 1, _STRIDES[0])
+        kinds = len(self.powers) - 2
+        return [Place((r, self.own, *[loud] * kinds)) for r in sizes for loud in sizes]
+
+    @property
     def moves(self) -> list[tuple[int, ...]]:
         """Moves of one size, two or three: independent errors all together, and each alone."""
         kinds = len(self.powers) - 2
@@ -99,6 +106,10 @@ class Place:
 def climb(value: Callable[[Place], float], start: Place, *, near: bool = False) -> Place:
     """Return the place that no neighbour beats, moving one size or two or three at a time.
 
+    A remainder and independent errors may each explain what is left, and the way from one to the
+    other leads through places that explain nothing. So there is a second search, from the best of
+    a coarse grid of both.
+
     Parameters
     ----------
     value : callable
@@ -106,10 +117,20 @@ def climb(value: Callable[[Place], float], start: Place, *, near: bool = False) 
     start : Place
         Where to begin.
     near : bool
-        True where that is next to the place already: no long strides then.
+        True where that is next to the place already: neither long strides nor a second search.
     """
+    if near:
+        return _climbed(value, start, _STRIDES[1:])[0]
+    starts = (start, max(start.around, key=value))
+    return max((_climbed(value, s, _STRIDES) for s in starts), key=lambda end: end[1])[0]
+
+
+def _climbed(
+    value: Callable[[Place], float], start: Place, strides: Sequence[int]
+) -> tuple[Place, float]:
+    """Return where one search ends, and the value there."""
     here, best = start, value(start)
-    for stride in _STRIDES[1:] if near else _STRIDES:
+    for stride in strides:
         moved = True
         while moved:
             moved = False
@@ -121,4 +142,4 @@ def climb(value: Callable[[Place], float], start: Place, *, near: bool = False) 
                 if found > best + _BETTER:
                     here, best, moved = there, found, True
                     break
-    return here
+    return here, best
