@@ -25,6 +25,13 @@ class Agreement:
     """rad, measured ahead of computed."""
     residual: float
     """What gain and phase leave, over the measured signal, in the band of the motion."""
+    uncertainty: float
+    """Standard error of gain and phase, by the measured signal's own noise."""
+
+    @property
+    def is_hidden(self) -> bool:
+        """Return whether the measured signal's noise leaves gain and phase open."""
+        return not self.accepted and self.uncertainty > GAIN_TOLERANCE
 
     @property
     def accepted(self) -> bool:
@@ -105,10 +112,13 @@ def derivative_agreement(
     power = np.abs(plain) ** 2
     strong = power > 0.01 * power[1:].max()
     strong[0] = False
+    # What is left of the measured signal at high frequencies is taken for noise, alike at all.
+    noise = float(np.sqrt(np.median(np.abs(found[found.size // 2 :]) ** 2) / np.log(2.0)))
     offset = np.fft.rfft(window)[strong]  # a sensor's constant offset is no disagreement
     offset = offset / np.linalg.norm(offset)
     computed, found = (c[strong] - offset * np.vdot(offset, c[strong]) for c in (computed, found))
-    ratio = complex(np.vdot(computed, found) / np.vdot(computed, computed).real)
+    size_there = float(np.linalg.norm(computed))
+    ratio = complex(np.vdot(computed, found) / size_there**2)
     total = float(np.linalg.norm(found))
     rest = float(np.linalg.norm(found - ratio * computed)) / total if total else 1.0
-    return Agreement(abs(ratio), float(np.angle(ratio)), rest)
+    return Agreement(abs(ratio), float(np.angle(ratio)), rest, noise / size_there)

@@ -168,6 +168,10 @@ def _checked_by_motion(
         if agreement.accepted:
             values[name] = column
             continue
+        if agreement.is_hidden:
+            text = f"the measured {name} is not used: its noise hides what the displacement tells"
+            findings.append(Finding("note", text, file))
+            continue
         text = (
             f"the measured {name} disagrees with the displacement: {agreement.reason}; "
             "it is not used"

@@ -332,9 +332,27 @@ def test_measured_velocity_is_kept_or_rejected_with_a_reason(
         assert re.search(reason, text)
 
 
+def _with_acceleration(folder: Path, acceleration: np.ndarray) -> Campaign:
+    content = HEADER + ",acceleration [m/s^2]\n"
+    content += rows(TIME, DISPLACEMENT, FORCE, acceleration)
+    return read_campaign(campaign(folder, content))
+
+
 def test_unrelated_acceleration_is_rejected(tmp_path: Path) -> None:
-    noise = np.random.default_rng(6).standard_normal(TIME.size)
-    content = HEADER + ",acceleration [g_0]\n" + rows(TIME, DISPLACEMENT, FORCE, noise)
-    found = read_campaign(campaign(tmp_path / "c", content))
-    assert found.records[0].acceleration is None
-    assert "the measured acceleration disagrees" in found.findings[0].text
+    wandering = 0.05 * np.cumsum(np.random.default_rng(6).standard_normal(TIME.size))
+    for place, signal in enumerate((wandering, np.cos(16.0 * TIME))):
+        found = _with_acceleration(tmp_path / str(place), signal)
+        assert found.records[0].acceleration is None
+        assert "the measured acceleration disagrees" in found.findings[0].text
+        assert found.findings[0].level == "warning"
+
+
+def test_an_acceleration_whose_noise_hides_the_motion_is_not_called_wrong(tmp_path: Path) -> None:
+    true = -0.01 * (2 * np.pi * 1.5) ** 2 * np.sin(2 * np.pi * 1.5 * TIME)
+    noise = 9.8 * np.random.default_rng(6).standard_normal(TIME.size)
+    for place, signal in enumerate((noise, true + noise)):
+        found = _with_acceleration(tmp_path / str(place), signal)
+        assert found.records[0].acceleration is None
+        (finding,) = found.findings
+        assert "acceleration is not used: its noise hides" in finding.text
+        assert finding.level == "note"
