@@ -18,7 +18,9 @@ from discover.readers.guess import UNSURE, Guess, TableGuess, guess_table
 from discover.readers.long_record import first_part, read_record_of_any_length
 from discover.readers.source import Book, Source
 from discover.readers.toml_text import campaign_text
+from discover.record_kind import classify
 from discover.records import Finding, Record
+from discover.sine_fit import sine_steps
 from models.checks import InputError, printable
 
 _QUARTER = 4  # records, of which one is held out
@@ -144,19 +146,13 @@ def draft_campaign(
     for (entry, source, _), guess in zip(found, guesses, strict=True):
         own = _own_channel(source, guess, columns)
         entry = replace(entry, channel=own, units=own_units(guess, units))
+        reading = _Reading(source, guess, {**columns, **own}, {**units, **entry.units})
         try:
-            read = read_record_of_any_length(
-                source,
-                entry,
-                names={**columns, **own},
-                units={**units, **entry.units},
-                part=str(entry.part or ""),
-            )
+            whole = reading.of(entry)
         except InputError as error:
             left_out.append((entry.label(str(entry.part or "")), str(error)))
             continue
-        record, findings, _ = read
-        records.append(DraftRecord(entry, guess, record, tuple(findings)))
+        records += reading.steps(whole) or [whole]
     if not records:
         file, why = left_out[0] if left_out else ("", "no file that can be read")
         more = f" (and {len(left_out) - 1} more files)" if len(left_out) > 1 else ""
@@ -177,6 +173,44 @@ def draft_campaign(
         _doubts([r.guess for r in records], answers),
         device,
     )
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """How a table is read."""
+
+    source: Source
+    guess: TableGuess
+    names: Mapping[str, str]
+    """Headers by quantity."""
+    units: Mapping[str, str]
+    """Units by quantity."""
+
+    def of(self, entry: Entry) -> DraftRecord:
+        """Return what an entry names."""
+        record, findings, _ = read_record_of_any_length(
+            self.source, entry, names=self.names, units=self.units, part=str(entry.part or "")
+        )
+        return DraftRecord(entry, self.guess, record, tuple(findings))
+
+    def steps(self, whole: DraftRecord) -> list[DraftRecord]:
+        """Return the sine tests of a stepped sine; none of any other record."""
+        record = whole.record
+        if record.displacement is None or record.long is not None:
+            return []
+        found = []
+        for first, last in sine_steps(record.time, record.displacement):
+            text = f"{first:.6g} s : {last:.6g} s"
+            span = (float(f"{first:.6g}"), float(f"{last:.6g}"))
+            try:
+                step = self.of(replace(whole.entry, span=span, span_text=text))
+                known = classify(step.record).kind == "sine"
+            except InputError:
+                known = False
+            if not known:
+                return []
+            found.append(step)
+        return found
 
 
 def record_files(folder: Path) -> list[str]:

@@ -52,6 +52,8 @@ def _entry_lines(entry: Entry) -> list[str]:
     lines = ["[[records]]", f"file = {quoted(entry.file)}"]
     if entry.part is not None:
         lines.append(f"{entry.key} = {quoted(str(entry.part))}")
+    if entry.span_text:
+        lines.append(f"range = {quoted(entry.span_text)}")
     for key, own in (("channel", entry.channel), ("units", entry.units)):
         if own:
             inside = ", ".join(f"{q} = {quoted(text)}" for q, text in own.items())

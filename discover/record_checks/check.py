@@ -15,6 +15,7 @@ from discover.record_checks.loop_work import LoopWork, loop_work
 from discover.record_kind import RecordKind, classify
 from discover.records import Campaign, Finding, Record
 from discover.rows import compared_with
+from discover.sine_fit import sine_steps
 
 _BEYOND_SKEW = 0.5  # of the force: no plausible delay turns that much of inertia into damping
 _FEW_CYCLES = 3.0  # below which a warning says so
@@ -138,7 +139,7 @@ def check_records(campaign: Campaign, observations: Sequence[Observation]) -> Ca
         Its findings hold those of reading.
     """
     records = tuple(check_record(observation) for observation in observations)
-    findings = [*campaign.findings, *_of_campaign(campaign)]
+    findings = [*campaign.findings, *_of_campaign(campaign), *_stepped(campaign.records)]
     for record in records:
         findings.extend(_quality(record))
     order = {"error": 0, "warning": 1, "note": 2}
@@ -181,6 +182,22 @@ def _signs(records: tuple[Record, ...]) -> list[Finding]:
         " records: the force has another sign or delay here than there"
     )
     return [Finding("error", text, r.file) for r in giving]
+
+
+def _stepped(records: tuple[Record, ...]) -> list[Finding]:
+    """Return findings on records that are several sine tests in one."""
+    found = []
+    for r in records:
+        if r.displacement is None or classify(r).kind not in ("trajectory", "transient"):
+            continue
+        count = len(sine_steps(r.time, r.displacement))
+        if count:
+            text = (
+                f"it is a stepped sine of {count} steps; as sine tests, each with a `range` of its"
+                " own, they tell noise and model better: `inerter init` writes them"
+            )
+            found.append(Finding("warning", text, r.file))
+    return found
 
 
 def _work(record: Record) -> LoopWork | None:

@@ -76,6 +76,7 @@ def draft_lines(draft: Draft, *, written: str, campaign: str) -> list[str]:
         f"Campaign: {counted(len(draft.records), 'record')}, {held} of them held out, in {written}"
     ]
     lines += [f"Columns: {text}" for text in _guessed(draft)]
+    lines += [f"Stepped sine: {text}" for text in _stepped(draft)]
     lines += [f"Left out: {printable(file)}: {printable(why)}" for file, why in draft.left_out]
     for doubt in draft.doubts:
         option = "--column" if doubt.key == "columns" else "--unit"
@@ -87,6 +88,15 @@ def draft_lines(draft: Draft, *, written: str, campaign: str) -> list[str]:
         )
     lines.append(f"Next: inerter check {campaign}")
     return lines
+
+
+def _stepped(draft: Draft) -> list[str]:
+    """Return how many sine tests were found in how many files or parts of them."""
+    own = [(r.entry.file, r.entry.part) for r in draft.records if r.entry.span_text]
+    if not own:
+        return []
+    whole = counted(len(set(own)), "record")
+    return [f"{whole} of several steps, {counted(len(own), 'sine test')} in all, a range each"]
 
 
 def _guessed(draft: Draft) -> list[str]:
