@@ -13,6 +13,7 @@ from discover.words import (
     coordinate_name,
     coordinate_value,
     counted,
+    in_parts,
     interval,
     left_over,
     listed,
@@ -22,10 +23,11 @@ from discover.words import (
     remainder_text,
     short_name,
     significant,
+    spread,
     zero_possible,
 )
 from models.cores import FRICTION, OTHER
-from models.terms.between_tests import ONLY
+from models.terms.between_tests import ONLY, OVER
 
 SURE = 0.8
 """Probability under which a structure is not stated: whoever acts on it is wrong once in five."""
@@ -183,12 +185,22 @@ def extras_line(document: Mapping[str, Any]) -> str:
 
 
 def _extra(group: Sequence[Mapping[str, Any]]) -> str:
-    """Say an effect, of which there may be several, as one of each record."""
-    sizes = []
+    """Say an effect, of which there may be several, as one of each record.
+
+    Of those of each test the range is told, where tests are more than a sentence has room for.
+    """
+    alike: dict[str, list[Mapping[str, Any]]] = {}
     for extra in group:
-        size = quantity(extra["coefficient"], extra["unit"], extra["interval"])
-        told = shape({key: value for key, value in extra.items() if not key.endswith("_interval")})
-        sizes.append(f"{size}, {told}" if told else size)
+        alike.setdefault(_shape(extra, ONLY.name), []).append(extra)
+    sizes = []
+    for some in alike.values():
+        if len(some) > _FEW_TESTS:
+            told = f"{_sizes(some)} in {counted(len(some), 'test')}, each its own"
+            sizes.append(", ".join(filter(None, (told, _shape(some[0], ONLY.name, OVER.name)))))
+            continue
+        for extra in some:
+            size = quantity(extra["coefficient"], extra["unit"], extra["interval"])
+            sizes.append(", ".join(filter(None, (size, _shape(extra)))))
     possibly = "possibly " if all(zero_possible(e["interval"]) for e in group) else ""
     text = f"{possibly}{short_name(str(group[0]['id']))} {'; '.join(sizes)}"
     text += f", {probability(group[0]['probability'])}"
@@ -197,6 +209,22 @@ def _extra(group: Sequence[Mapping[str, Any]]) -> str:
         for a in group[0].get("alternatives", ())
     ]
     return f"{text}, or {listed(others, last='or')}" if others else text
+
+
+_FEW_TESTS = 3  # whose own values are told one by one
+
+
+def _shape(extra: Mapping[str, Any], *but: str) -> str:
+    """Return an effect's shape parameters in words, without intervals and those left out."""
+    left_out = tuple(f"{key}_interval" for key in extra) + but
+    return shape({key: value for key, value in extra.items() if key not in left_out})
+
+
+def _sizes(some: Sequence[Mapping[str, Any]]) -> str:
+    """Return the least and the greatest coefficient of some effects of one unit."""
+    values = [float(e["coefficient"]) for e in some]
+    unit, factor = in_parts(max(values, key=abs), str(some[0]["unit"]))
+    return f"{spread([factor * min(values), factor * max(values)])} {unit}"
 
 
 def friction_text(band: Mapping[str, Any]) -> str:
