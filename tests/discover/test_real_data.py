@@ -113,14 +113,8 @@ def test_silverbox_is_a_duffing_oscillator():
 
 
 STRANGE = (
-    pytest.param(
-        "foot-single-cam",
-        marks=pytest.mark.xfail(
-            strict=True, reason="what its cycles differ by, 22 % of the force, is taken for noise"
-        ),
-    ),
-    "fsae-damper-hard", "fsae-damper-soft",
-    "inerter-cvt-steady", "mr-utfsm-0p5A", "seal-oring-1bar", "seal-xring",
+    "foot-single-cam", "fsae-damper-hard", "fsae-damper-soft", "inerter-cvt-steady",
+    "mr-utfsm-0p5A", "seal-oring-1bar", "seal-xring",
 )  # fmt: skip
 
 
