@@ -118,6 +118,8 @@ def derivative_agreement(
     offset = offset / np.linalg.norm(offset)
     computed, found = (c[strong] - offset * np.vdot(offset, c[strong]) for c in (computed, found))
     size_there = float(np.linalg.norm(computed))
+    if not size_there:  # a line that an offset would make as well
+        return Agreement(0.0, 0.0, 1.0, np.inf)
     ratio = complex(np.vdot(computed, found) / size_there**2)
     total = float(np.linalg.norm(found))
     rest = float(np.linalg.norm(found - ratio * computed)) / total if total else 1.0

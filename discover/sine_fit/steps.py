@@ -58,16 +58,13 @@ def sine_steps(time: Array, displacement: Array) -> list[tuple[float, float]]:
 
 
 def _crossings(time: Array, x: Array) -> Array:
-    """Return when x passes zero, s, by straight lines between samples; noise at zero is one."""
+    """Return when x passes zero, s, by straight lines past what noise does beside it."""
     beside = _BESIDE_ZERO * float(np.abs(x).max())
     far = np.flatnonzero(np.abs(x) > beside)
     turned = np.flatnonzero(np.diff(np.sign(x[far])) != 0.0)
-    found = []
-    for before, after in zip(far[turned], far[turned + 1], strict=True):
-        part = slice(before, after + 1)
-        slope, level = np.polyfit(time[part] - time[before], x[part], 1)
-        found.append(time[before] - level / slope)
-    return np.array(found)
+    before, after = far[turned], far[turned + 1]
+    share = x[before] / (x[before] - x[after])
+    return np.asarray(time[before] + share * (time[after] - time[before]))
 
 
 def _runs(*logs: Array) -> list[slice]:

@@ -224,7 +224,8 @@ def _sizes(some: Sequence[Mapping[str, Any]]) -> str:
     """Return the least and the greatest coefficient of some effects of one unit."""
     values = [float(e["coefficient"]) for e in some]
     unit, factor = in_parts(max(values, key=abs), str(some[0]["unit"]))
-    return f"{spread([factor * min(values), factor * max(values)])} {unit}"
+    text = spread([factor * min(values), factor * max(values)])
+    return text if unit in ("", "1") else f"{text} {unit}"
 
 
 def friction_text(band: Mapping[str, Any]) -> str:

@@ -217,17 +217,20 @@ def test_what_may_as_well_be_nothing_is_possible_only_and_not_in_the_headline():
     assert "Beside it: possibly stiffness" in "".join(verdict_lines(document))
 
 
-def test_values_of_many_tests_are_told_by_their_range():
+@pytest.mark.parametrize(("effect", "unit", "many", "few"), [
+    ("force-offset", "N", "force offset −240 to −237 N in 4 tests, each its own, 97",
+     "force offset −240 N (−241 to −239), in test 1 only; −237 N"),
+    ("sensor-gain", "1", "sensor gain −240 to −237 in 4 tests, each its own, 97",
+     "sensor gain −240 (−241 to −239), in test 1 only; −237 (−238"),
+])  # fmt: skip
+def test_values_of_many_tests_are_told_by_their_range(effect, unit, many, few):
     document = sample_document()
     own = [
-        {"id": "force-offset", "coefficient": v, "unit": "N", "interval": [v - 1.0, v + 1.0],
+        {"id": effect, "coefficient": v, "unit": unit, "interval": [v - 1.0, v + 1.0],
          "only": float(k), "probability": 0.97, "alternatives": []}
         for k, v in enumerate((-240.0, -237.0, -239.0, -238.5), start=1)
     ]  # fmt: skip
-    for count, told in (
-        (4, "force offset −240 to −237 N in 4 tests, each its own, 97"),
-        (2, "force offset −240 N (−241 to −239), in test 1 only; −237 N"),
-    ):
+    for count, told in ((4, many), (2, few)):
         for band in document["bands"]:
             band["extras"] = own[:count]
         assert told in "\n".join(verdict_lines(document))
