@@ -19,7 +19,7 @@ from discover.bands.variants import Grids, variants_of
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.climb import Place
 from discover.posterior.grow import grown
-from discover.posterior.left_out import is_needed, predicts_better
+from discover.posterior.left_out import is_needed, is_told_from_noise, predicts_better
 from discover.posterior.model import Composite, Evaluator
 from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
@@ -139,7 +139,10 @@ def found(device: Device) -> Found:
         return now
     best, ends = now, list[Found]()
     starts = {b.bands: b for b in (now.banded, now.fewer[0])}
-    for start in (*starts.values(), _other_family(now)):
+    other = _other_family(now)
+    for start in (*starts.values(), other):
+        if start is other and not is_told_from_noise(best.assessed):
+            break
         way = replace(now, banded=start)
         for _ in range(MOST):
             more = _with_one_more(way)

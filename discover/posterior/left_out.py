@@ -82,6 +82,17 @@ def predicts_better(was: Assessed, now: Assessed) -> bool:
     return is_less(after, before)
 
 
+def is_told_from_noise(assessed: Assessed) -> bool:
+    """Tell whether records left out would be predicted better, were what is left but noise."""
+    sheet = assessed.space.sheet
+    records = np.array([u.record for u in sheet.units])
+    errors = left_out(assessed.predicting)[1]
+    if errors.size != records.max() + 1:  # parts of a lone record
+        return True
+    noise = np.array([_noise(sheet, np.flatnonzero(records == r)) for r in range(errors.size)])
+    return is_less(noise, errors)
+
+
 def is_needed(without: Assessed, with_it: Assessed) -> bool:
     """Tell whether a model is better with a term: by evidence where one leaves but noise.
 
@@ -130,11 +141,28 @@ def predicts_best(errors: Sequence[Array], log_prior: Array, lines: float, seed:
 
 def _relative(sheet: Sheet, units: Indices, left: Array) -> float:
     """Return the energy of what is left in units of a record, over that of the record's force."""
-    rows = sheet.rows[sheet.units[int(units[0])].record]
-    whole = float(np.sum((rows.target / rows.size) ** 2))
-    total = 0.0
+    squares = []
     for u, own in zip(units, left, strict=True):
         part, basis = sheet.units[int(u)].part, sheet.units[int(u)].basis
-        here = own[: part.size] if basis is None else basis @ own[: basis.shape[1]]
-        total += float(np.sum((here / rows.size[part]) ** 2))
+        squares.append((own[: part.size] if basis is None else basis @ own[: basis.shape[1]]) ** 2)
+    return _share(sheet, units, squares)
+
+
+def _noise(sheet: Sheet, units: Indices) -> float:
+    """Return the energy of noise in units of a record, over that of the record's force."""
+    squares = []
+    for u in units:
+        part, basis = sheet.units[int(u)].part, sheet.units[int(u)].basis
+        squares.append(np.ones(part.size) if basis is None else np.sum(basis**2, axis=1))
+    return _share(sheet, units, squares)
+
+
+def _share(sheet: Sheet, units: Indices, squares: Sequence[Array]) -> float:
+    """Return squares of the rows of units of a record, over the energy of the record's force."""
+    rows = sheet.rows[sheet.units[int(units[0])].record]
+    whole = float(np.sum((rows.target / rows.size) ** 2))
+    total = sum(
+        float(np.sum(s / rows.size[sheet.units[int(u)].part] ** 2))
+        for u, s in zip(units, squares, strict=True)
+    )
     return total / max(whole, 1e-300)
