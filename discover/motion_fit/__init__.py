@@ -11,6 +11,7 @@ from discover.motion_fit.band import observe_band
 from discover.motion_fit.cycle_sums import POINTS
 from discover.motion_fit.harmonic import observe_sine
 from discover.motion_fit.long_sine import observe_long_sine
+from discover.motion_fit.motion_noise import with_motion_noise
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
 from discover.motion_fit.periodic import observe_periodic
 from discover.record_kind import classify
@@ -42,11 +43,9 @@ def observe(record: Record) -> Observation:
         frequency = kind.frequency or record.frequency
         if frequency is None:
             raise InputError("frequency", expected="found or given", where=record.file)
-        coefficients = None if kind.sine is None else kind.sine.coefficients
-        noise = 0.0 if kind.sine is None else kind.sine.noise_rms
         if record.long is not None and kind.sine is not None:
             return observe_long_sine(record, record.long, kind.usable, kind.sine)
-        return observe_sine(record, kind.usable, frequency, coefficients, noise)
+        return observe_sine(record, kind.usable, frequency, kind.sine)
     if record.even is not record:
         if record.gaps:
             raise InputError(
@@ -66,7 +65,7 @@ def observe_all(records: Sequence[Record], jobs: int) -> tuple[Observation, ...]
         seen = [observe(r) for r in records]
     else:
         seen = Parallel(n_jobs=jobs, prefer="threads")(delayed(observe)(r) for r in records)
-    return tuple(replace(o, test=place) for place, o in enumerate(seen, start=1))
+    return with_motion_noise([replace(o, test=p) for p, o in enumerate(seen, start=1)])
 
 
 __all__ = ["POINTS", "Lines", "Observation", "Window", "observe", "observe_all", "real_rows"]

@@ -14,7 +14,7 @@ from discover.motion_fit.noise import density_between_lines
 from discover.motion_fit.noise_spectrum import noise_spectrum
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
 from discover.records import Record
-from discover.sine_fit import Harmonics, Moments, harmonic_series, moments
+from discover.sine_fit import Harmonics, LongFit, Moments, SineFit, harmonic_series, moments
 from models.checks import Array, InputError
 from models.fractional import harmonic_factors
 from models.motion import Motion, harmonic_motion
@@ -84,8 +84,7 @@ def observe_sine(
     record: Record,
     usable: slice,
     frequency: float,
-    displacement: Lines | None,
-    displacement_noise: float,
+    sine: SineFit | LongFit | None,
 ) -> Observation:
     """Return the observation of a sine test.
 
@@ -97,11 +96,9 @@ def observe_sine(
         Samples in the steady state.
     frequency : float
         Hz.
-    displacement : ndarray of complex, shape (H + 1,), or None
-        Mean and significant harmonics of the displacement, m, as phasors at the record's t = 0;
-        None where the record has no displacement, and then its labelled amplitude is used.
-    displacement_noise : float
-        m, root mean square.
+    sine : SineFit, LongFit or None
+        Of the displacement, m, with its mean and significant harmonics; None where the record has
+        no displacement, and then its labelled amplitude is used.
 
     Returns
     -------
@@ -115,6 +112,7 @@ def observe_sine(
         Where fewer than one and a half cycles are usable, or the sampling resolves no harmonic.
     """
     time, force = record.time[usable], record.force[usable]
+    displacement = None if sine is None else sine.coefficients
     duration = float(time[-1] - time[0]) * time.size / (time.size - 1)
     count = _resolved_harmonics(time.size, duration * frequency, record.file)
     middle = float(time.mean()) if duration * frequency > 2.0 else None
@@ -156,7 +154,8 @@ def observe_sine(
         time=time,
         measured=force,
         at_samples=lambda column: column,
-        displacement_noise=displacement_noise,
+        displacement_noise=0.0 if sine is None else sine.noise_rms,
+        motion_error=np.zeros(0) if sine is None else sine.std_errors,
         force_noise=noise,
         noise=spectrum,
         cutoff=None,

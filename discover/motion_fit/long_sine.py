@@ -51,7 +51,7 @@ def observe_long_sine(
         lambda: ((p.time, p.displacement) for p in steady()), long.samples - start, head,
         record.time[usable], record.displacement[usable], where=record.file,
     )  # fmt: skip
-    first_part = observe_sine(record, usable, fit.frequency, fit.coefficients, fit.noise_rms)
+    first_part = observe_sine(record, usable, fit.frequency, fit)
     (window,) = first_part.windows
 
     count = window.omega.size - 1

@@ -59,6 +59,9 @@ class Window:
     """N^2: mean square of the force's noise."""
     share: float = 1.0
     """Part of the record's duration."""
+    through: Array | None = None
+    """(L,) of the variance, what the displacement's noise makes, N^2; None where it is not apart.
+    """
 
     @property
     def power(self) -> float:
@@ -105,6 +108,9 @@ class Observation:
     """Number of the record in its campaign, from 1; 0 where it is not known."""
     usable: slice = field(default_factory=lambda: slice(None))
     """Samples of the record that are used."""
+    motion_error: Array = field(default_factory=lambda: np.zeros(0))
+    """(H + 1,) m: standard error of the real (and of the imaginary) part of each phasor of a sine
+    test's displacement; none where it is not measured."""
     sums: CycleSums | None = None
     """Of all usable samples of a sine test that has many; of a long one `time`, `motion` and
     `measured` hold the first."""

@@ -135,6 +135,9 @@ def _variance(
         drift = (order == 0) & (changes > 0.0)
         wanted[drift] = 0.5 * changes[drift] / duration
         variance = 0.5 * observation.noise.at(wanted) * samples / duration + floor
+    if window.through is not None:
+        through = window.through[np.minimum(order, count)]
+        variance = variance + np.where(changes > 0.0, 0.0, samples * through)
     variance = np.where((changes > 0.0) | (order == 0), _SLOW_DOUBT * variance, variance)
     step = observation.motion.step
     hum = _hum(order.astype(float) * frequency, 2.0 / duration, 1.0 / step) & (order > 2)

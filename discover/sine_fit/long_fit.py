@@ -32,6 +32,8 @@ class LongFit:
     """Hz, of the fundamental."""
     coefficients: ComplexArray
     """(H + 1,) as of `SineFit`."""
+    std_errors: Array
+    """(H + 1,) likewise, by the noise of the record's first part."""
     noise_rms: float
     """Root mean square of what the fit leaves."""
     first: float
@@ -127,12 +129,15 @@ def fit_long_sine(
     square = float(total[-1, -1] - solution @ total[chosen, -1])
     coefficients = np.zeros(max(orders) + 1, dtype=np.complex128)
     coefficients[0] = beta[0] + offset
+    errors = np.zeros(coefficients.size)
     for i, k in enumerate(orders):
-        phasor = complex(beta[1 + 2 * i], beta[2 + 2 * i])
-        coefficients[k] = phasor * np.exp(-2j * np.pi * k * frequency * middle)
+        pair = slice(1 + 2 * i, 3 + 2 * i)
+        coefficients[k] = complex(*beta[pair]) * np.exp(-2j * np.pi * k * frequency * middle)
+        errors[k] = np.sqrt(0.5 * float(linear[1][pair].sum()) * local[k]) * (k in kept)
     return LongFit(
         frequency=frequency,
         coefficients=coefficients[: max(kept) + 1],
+        std_errors=errors[: max(kept) + 1],
         noise_rms=float(np.sqrt(max(square, 0.0) / max(samples - len(chosen), 1))),
         first=float(time[0]),
         last=sums.last,

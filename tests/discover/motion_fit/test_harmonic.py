@@ -6,6 +6,7 @@ import pytest
 from discover.motion_fit import observe
 from discover.motion_fit.harmonic import observe_sine
 from discover.records import Record
+from discover.sine_fit import SineFit
 from models.checks import InputError
 
 AMPLITUDE = 0.01
@@ -21,7 +22,11 @@ def sine_record(force_of, *, frequency=1.3, cycles=7.37, rate=400.0, start=2.0, 
 def seen(record, *, frequency=1.3, phase=0.4):
     """Return the observation with the motion given exactly."""
     phasor = -1j * AMPLITUDE * np.exp(1j * phase)
-    return observe_sine(record, slice(None), frequency, np.array([0.0, phasor]), 0.0)
+    exact = SineFit(
+        frequency, 0.0, np.array([0.0, phasor]), np.zeros(2), 0.0, 0.0, 0.0,
+        np.zeros(record.time.size), 1.0, float(np.ptp(record.time)) * frequency,
+    )
+    return observe_sine(record, slice(None), frequency, exact)
 
 
 def random_force(seed, harmonics=9):
@@ -189,4 +194,4 @@ def test_without_amplitude_there_is_no_motion():
     time = np.arange(400) / 100.0
     record = Record("f.csv", time, np.sin(2 * np.pi * time), frequency=1.0)
     with pytest.raises(InputError, match="amplitude"):
-        observe_sine(record, slice(None), 1.0, None, 0.0)
+        observe_sine(record, slice(None), 1.0, None)
