@@ -8,28 +8,32 @@ harmonic of the force can be no surer than that of the motion which drives it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
-from discover.motion_fit.observation import Lines, Observation
+from discover.motion_fit.observation import Observation
 from models.checks import Array
 
+_ALIKE = 0.2  # of the logarithm of frequency, within which tests count as of one
 
 def with_motion_noise(observations: Sequence[Observation]) -> tuple[Observation, ...]:
     """Return observations whose sine tests know the force's error due to that of their motion.
 
     The campaign's tests together tell what force a motion makes: the apparent dynamic stiffness of
-    their fundamentals over frequency, as of a spring, a damper and an inertance.
+    their fundamentals over frequency.
     """
     sines = [o for o in observations if _is_seen(o)]
     if not sines:
         return tuple(observations)
-    omega = np.array([2.0 * np.pi * o.frequency for o in sines])
-    # Phases count from the velocity's.
-    stiffness = np.array([1j * np.sqrt(2.0) * o.windows[0].force[1] / o.amplitude for o in sines])
-    parts = _parts(omega, stiffness)
-    return tuple(_with_noise(o, parts) if _is_seen(o) else o for o in observations)
+    frequency = np.array([o.frequency for o in sines])
+    size = np.array([np.sqrt(2.0) * abs(o.windows[0].force[1]) / o.amplitude for o in sines])
+    known = size > 0.0
+    if not np.any(known):
+        return tuple(observations)
+    answer = _Answer.of(frequency[known], size[known])
+    return tuple(_with_noise(o, answer) if _is_seen(o) else o for o in observations)
 
 
 def _is_seen(observation: Observation) -> bool:
@@ -37,30 +41,49 @@ def _is_seen(observation: Observation) -> bool:
     return observation.kind == "sine" and bool(np.any(observation.motion_error > 0.0))
 
 
-def _answers(omega: Array) -> Lines:
-    """Return the dynamic stiffness (T, 3) of a unit of each part at rates (T,), 1/s."""
-    return np.stack([np.ones_like(omega), 1j * omega, -(omega**2)], axis=1).astype(complex)
+@dataclass(frozen=True)
+class _Answer:
+    """Dynamic stiffness over frequency, between tests a power of it."""
+
+    place: Array
+    """(T,) logarithm of frequencies, Hz, rising."""
+    level: Array
+    """(T,) logarithm of the stiffness, N/m."""
+
+    @classmethod
+    def of(cls, frequency: Array, stiffness: Array) -> Self:
+        """Return what tests (N,) tell: frequencies, Hz, and stiffness, N/m."""
+        near = np.round(np.log(frequency) / _ALIKE)
+        each, inverse = np.unique(near, return_inverse=True)
+        count = np.bincount(inverse)
+        place = np.bincount(inverse, np.log(frequency)) / count
+        return cls(place[: each.size], np.bincount(inverse, np.log(stiffness)) / count)
+
+    @property
+    def slope(self) -> float:
+        """Power of the frequency beyond the tests': of a spring 0, an inertance 2.
+
+        That of the two highest ones; a damper's where all tests are at one frequency.
+        """
+        if self.place.size < 2:
+            return 1.0
+        rise = np.diff(self.level[-2:]) / np.diff(self.place[-2:])
+        return float(np.clip(rise[0], 0.0, 2.0))
+
+    def at(self, frequency: Array) -> Array:
+        """Return the stiffness (K,), N/m, at frequencies, Hz."""
+        place = np.log(frequency)
+        beyond = np.maximum(place - self.place[-1], 0.0)
+        return np.asarray(np.exp(np.interp(place, self.place, self.level) + self.slope * beyond))
 
 
-def _parts(omega: Array, stiffness: Lines) -> Array:
-    """Return the spring, N/m, damper, N s/m, and inertance, kg, that answer like the tests (T,).
-
-    Each test counts alike; of one alone, which can't tell spring and inertance, as even ones.
-    """
-    answers = _answers(omega) / np.abs(stiffness)[:, None]
-    goal = stiffness / np.abs(stiffness)
-    columns = np.concatenate([answers.real, answers.imag])
-    scale = np.linalg.norm(columns, axis=0)
-    found = np.linalg.lstsq(columns / scale, np.concatenate([goal.real, goal.imag]), rcond=None)[0]
-    return np.asarray(found / scale)
-
-
-def _with_noise(observation: Observation, parts: Array) -> Observation:
+def _with_noise(observation: Observation, answer: _Answer) -> Observation:
     (window,) = observation.windows
-    error = np.zeros(window.omega.size)
-    known = observation.motion_error[: error.size]
-    error[1 : known.size] = known[1:]
-    made = (error * np.abs(_answers(window.omega) @ parts)) ** 2
+    error = observation.motion_error[1 : window.omega.size]
+    made = np.zeros(window.omega.size)
+    made[1 : 1 + error.size] = (
+        error * answer.at(window.omega[1 : 1 + error.size] / (2.0 * np.pi))
+    ) ** 2
     window = replace(
         window,
         variance=window.variance + 0.5 * made,

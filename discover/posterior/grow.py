@@ -109,16 +109,18 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
         (gain, model) for gain in _starting(starts)
         if np.all(np.isfinite(evaluator.force(model := now.model.plus(*_begun(gain)))))
     ]
-    if not chosen:  # at the size at which it would gain most it has no finite force
-        return Candidate(starts[0].trial.id, now.value, None)
-    gain, model = chosen[0]
     if len(chosen) > 1:
-        begun = [(*assessor.glance(m, start, iterations=_FEW_STEPS), g) for g, m in chosen]
-        model, _, gain = max(begun, key=lambda b: b[1] + b[2].trial.log_prior)
-    first = assessor.assess(model, start)
-    return Candidate(
-        gain.trial.id, first.value + gain.trial.log_prior, first, len(gain.trial.terms)
-    )
+        begun = [(g, *assessor.glance(m, start, iterations=_FEW_STEPS)) for g, m in chosen]
+        begun.sort(key=lambda b: b[2] + b[0].trial.log_prior, reverse=True)
+        chosen = [(g, m) for g, m, _ in begun]
+    for gain, model in chosen:
+        if np.all(np.isfinite(assessor.evaluator.force(model))):  # on the fine rows too
+            first = assessor.assess(model, start)
+            return Candidate(
+                gain.trial.id, first.value + gain.trial.log_prior, first, len(gain.trial.terms)
+            )
+    # At the sizes at which it would gain most it has no finite force.
+    return Candidate(starts[0].trial.id, now.value, None)
 
 
 def _starting(ranked: Sequence[Gain]) -> list[Gain]:

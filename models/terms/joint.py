@@ -20,6 +20,7 @@ _SHORT = 8192  # samples of one cycle; longer periods of many cycles settle with
 _LEAST_INNER, _MOST_INNER = 4, 60
 _MOST_STEPS = 1_000_000  # of one pass: a stiffer joint is as stiff as they can follow
 _ADDED_MASS = 1e-3  # of what would make the whole force: a damper's own time can't be stepped
+_SLOWED = 0.5  # of its speed, by which resistance slows a mass in an inner step at most
 _FORGETS = 7.0  # times e that what a joint began with decays over a cycle at least
 _LEAST_LOSS = 0.005  # that is enough for it, where it moves of its own many times a cycle
 _FAR = 15.0  # widths from a soft flank, where it is met or not
@@ -75,16 +76,16 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
         What `device_of` makes of the force.
     """
     mass, viscous, quadratic, dry, reversal, spring = device
-    if mass <= 0.0:
-        return force
     v, x = motion.velocity, motion.displacement - motion.displacement.mean()
     behind = 0.0 if joint.fluid_only else dry
     rigid = mass * motion.acceleration + viscous * v + quadratic * v * np.abs(v)
     rigid = rigid + behind * np.tanh(v / reversal) + spring * x
+    if not np.any(rigid):
+        return force
     most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
     resistance = viscous + quadratic * float(np.abs(v).max())
     carried_along = _ADDED_MASS * _size(rigid) / _size(motion.acceleration)
-    mass = max(mass, carried_along, resistance * motion.step / most)
+    mass = max(mass, carried_along, resistance * motion.step / (_SLOWED * most))
     natural = float(np.sqrt((joint.stiffness + max(spring, 0.0)) / mass))
     fastest = max(natural, resistance / mass)
     if joint.half_load > 0.0:

@@ -10,7 +10,7 @@ from models.constitutive import FittedTerm, ForceModel
 
 MASS, DAMPING, STIFFNESS = 12.0, 80.0, 9000.0
 NOISE = 6e-6
-PLAN = ((0.5, 0.010), (2.0, 0.005), (5.0, 0.003), (12.0, 0.001))
+PLAN = ((0.5, 0.010), (2.0, 0.005), (5.0, 0.003), (8.0, 0.002), (12.0, 0.001))
 DRIVE = {1: 1.0, 2: 0.02, 3: 0.03}
 TRUE = ForceModel(
     tuple(
@@ -45,15 +45,17 @@ def campaigns(count, **more):
 
 
 def test_the_true_law_leaves_noise_of_the_size_that_rows_have():
-    """Of the harmonics that are driven: their error comes from the motion's."""
+    """Of the harmonics that are driven, to a factor of 1.3, as noise is known elsewhere.
+
+    By the force's noise alone the true law would leave 60 to 230 times as much above 2 Hz.
+    """
     left = []
     for seen in campaigns(30):
         for o in seen:
             rows = record_rows(o)
             left.append((rows.target - force_rows(rows, TRUE))[1:7] ** 2)
     by_test = np.mean(np.array(left).reshape(30, len(PLAN), 6), axis=(0, 2))
-    # 360 squares of whole noise scatter by 7 %; the level of the motion's noise by as much.
-    np.testing.assert_allclose(by_test, 1.0, atol=0.3)
+    assert np.all(np.abs(np.log(by_test)) < 2.0 * np.log(1.3))
 
 
 def test_without_displacement_noise_nothing_is_added():
@@ -64,7 +66,7 @@ def test_without_displacement_noise_nothing_is_added():
 
 def test_the_error_is_what_copies_of_a_record_scatter_by():
     """Over copies the motion's harmonics, and what they make, scatter as is said."""
-    copies = [seen[3] for seen in campaigns(60)]
+    copies = [seen[4] for seen in campaigns(60)]
     omega = 2.0 * np.pi * 12.0 * np.arange(4)
     stiffness = np.abs(STIFFNESS - MASS * omega**2 + 1j * DAMPING * omega)
     known = np.array([o.windows[0].through[:4] for o in copies]).mean(axis=0)

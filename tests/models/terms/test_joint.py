@@ -65,10 +65,11 @@ def test_what_is_known_of_one_device_is_not_said_of_another():
         assert device_of(MASS * given.acceleration, given)[0] == pytest.approx(MASS)
 
 
-def test_a_damper_of_hardly_any_mass_follows_its_spring():
+@pytest.mark.parametrize("mass", [1e-3, 0.0])
+def test_a_damper_of_hardly_any_mass_follows_its_spring(mass):
     """A dashpot behind a spring: the mass is too small for its own time to be stepped."""
     given = motion(0.3)
-    force = 1e-3 * given.acceleration + 3000.0 * given.velocity
+    force = mass * given.acceleration + 3000.0 * given.velocity
     found = through_joint(force, given, Joint(4e4, 0.0), device_of(force, given))
     lines = np.fft.rfft(given.displacement)
     s = 2j * np.pi * 0.3 * np.arange(lines.size)
@@ -76,6 +77,28 @@ def test_a_damper_of_hardly_any_mass_follows_its_spring():
     lines[0] = 0.0
     exact = np.fft.irfft(lines, force.size)
     assert np.std(found - exact) < 0.02 * np.std(exact)
+
+
+@pytest.mark.parametrize("per_second", [60.0, 1000.0])
+def test_a_dashpot_behind_a_spring_follows_a_shock(per_second):
+    """Coarsely sampled, too: its own time is far below what can be stepped."""
+    stiffness, damping = 8e5, 2e4
+    time = np.arange(0.0, 6.0, 1.0 / per_second)
+    phase, fade = 7.0 * time, np.exp(-time)
+    x = 0.02 * fade * np.sin(phase)
+    v = 0.02 * fade * (7.0 * np.cos(phase) - np.sin(phase))
+    a = 0.02 * fade * (-48.0 * np.sin(phase) - 14.0 * np.cos(phase))
+    given = Motion(time, x, v, a, lambda orders: np.stack([x, v, a]), "given")
+    force = damping * v
+    found = through_joint(force, given, Joint(stiffness, 0.0), device_of(force, given))
+
+    def rate(t, carried):
+        speed = 0.02 * np.exp(-t) * (7.0 * np.cos(7.0 * t) - np.sin(7.0 * t))
+        return stiffness * (speed - carried / damping)
+
+    exact = solve_ivp(rate, (0.0, time[-1]), [force[0]], t_eval=time, rtol=1e-8, atol=1e-4).y[0]
+    later = time > 0.5
+    assert np.std((found - exact)[later]) < 0.02 * np.std(exact[later])
 
 
 @pytest.mark.parametrize("reversal", [0.03, 0.2])
