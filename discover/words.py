@@ -235,13 +235,28 @@ def quantity(
     ('2.26 mm/s (at least 1.6)', '8.6 µm', '0.5 s')
     >>> quantity(0.01, "1")
     '0.01'
+
+    The value has the digits that show it within its interval.
+
+    >>> quantity(9002.87, "N/m", [9001.4, 9004.2]).replace(THIN_SPACE, " ")
+    '9 003 N/m (9 001 to 9 004)'
     """
     shown, factor = in_parts(value, unit)
-    text = significant(factor * value, digits)
+    spread = [None if e is None else factor * e for e in ends] if ends else None
+    text = significant(factor * value, _digits_within(factor * value, spread, digits))
     if shown not in ("", "1"):
         text += f" {shown}"
-    spread = [None if e is None else factor * e for e in ends] if ends else None
     return f"{text} ({interval(spread, digits)})" if spread else text
+
+
+def _digits_within(value: float, ends: Sequence[float | None] | None, digits: int) -> int:
+    """Return the number of significant digits, some at least, that keep a value in its interval."""
+    low, high = ends or (None, None)
+    for n in range(digits, _MOST_DIGITS):
+        shown = float(f"{value:.{n - 1}e}")
+        if (low is None or low <= shown) and (high is None or shown <= high):
+            return n
+    return digits
 
 
 def listed(items: Iterable[str], last: str = "and") -> str:
