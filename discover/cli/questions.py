@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import typer
 
-from discover.readers.draft import Answers, Doubt, Draft
+from discover.readers.doubts import Doubt
+from discover.readers.draft import Answers, Draft
 from discover.readers.units import quantity
 from models.checks import InputError, number, printable
 from models.device import PRESETS

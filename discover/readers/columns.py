@@ -9,8 +9,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from discover.readers.names import NAMED, name_score
 from discover.readers.source import Source
-from discover.readers.units import LARGEST, SI_UNITS, check_unit, same_unit, to_si, turns_sign
+from discover.readers.units import (
+    LARGEST,
+    SI_UNITS,
+    check_unit,
+    is_unit,
+    measures,
+    same_unit,
+    to_si,
+    turns_sign,
+)
 from models.checks import Array, InputError
 
 QUANTITIES = {
@@ -56,6 +66,8 @@ def split_header(header: str) -> tuple[str, str | None]:
     --------
     >>> split_header("force [kN]"), split_header("force (kN)"), split_header("data(:,1)")
     (('force', 'kN'), ('force', 'kN'), ('data(:,1)', None))
+    >>> split_header("F / kN"), split_header("Weg/mm"), split_header("run 1/F")
+    (('F', 'kN'), ('Weg', 'mm'), ('run 1/F', None))
     """
     text = header.strip()
     for opening, closing, barred in (("[", "]", "[]"), ("(", ")", "():,")):
@@ -64,7 +76,17 @@ def split_header(header: str) -> tuple[str, str | None]:
         name, bracket, unit = text[:-1].rpartition(opening)
         if bracket and name.strip() and not any(c in unit for c in barred):
             return name.strip(), unit.strip() or None
+    name, slash, unit = text.rpartition("/")  # as of DIN 461; else it is a path's
+    if slash and name.strip() and unit.strip() and _over_unit(name, unit):
+        return name.strip(), unit.strip()
     return text, None
+
+
+def _over_unit(name: str, unit: str) -> bool:
+    """Return whether what follows a header's slash is a unit, and no name inside a group."""
+    if name[-1].isspace() and unit[0].isspace():
+        return is_unit(unit)
+    return any(name_score(name, q) and measures(unit.strip(), QUANTITIES[q]) for q in NAMED)
 
 
 def _plain(name: str) -> str:

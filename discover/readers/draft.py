@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from discover.readers.columns import find_column, split_header
+from discover.readers.doubts import Doubt, doubts
 from discover.readers.draft_units import common_units, own_units, settled
 from discover.readers.entries import Entry
 from discover.readers.fastest_motion import fastest_motion
 from discover.readers.formats import OPENERS, open_file
-from discover.readers.guess import UNSURE, Guess, TableGuess, guess_table
+from discover.readers.guess import Guess, TableGuess, guess_table
 from discover.readers.long_record import first_part, read_record_of_any_length
 from discover.readers.source import Book, Source
 from discover.readers.toml_text import campaign_text
@@ -55,22 +56,6 @@ class DraftRecord:
     """As read."""
     findings: tuple[Finding, ...]
     """Of reading it."""
-
-
-@dataclass(frozen=True)
-class Doubt:
-    """A guess that the user should look at."""
-
-    quantity: str
-    """Column that it is of."""
-    key: str
-    """"columns" or "units"."""
-    taken: str
-    """The header or the unit that was taken."""
-    choices: tuple[str, ...]
-    """What it may be besides, the taken one first."""
-    why: str
-    """In words."""
 
 
 @dataclass(frozen=True)
@@ -143,6 +128,7 @@ def draft_campaign(
     units = common_units(guesses)
     columns = _columns([(source, guess) for _, source, guess in found])
     records: list[DraftRecord] = []
+    read: list[tuple[Source, TableGuess]] = []
     for (entry, source, _), guess in zip(found, guesses, strict=True):
         own = _own_channel(source, guess, columns)
         entry = replace(entry, channel=own, units=own_units(guess, units))
@@ -153,6 +139,7 @@ def draft_campaign(
             left_out.append((entry.label(str(entry.part or "")), str(error)))
             continue
         records += reading.steps(whole) or [whole]
+        read.append((source, guess))
     if not records:
         file, why = left_out[0] if left_out else ("", "no file that can be read")
         more = f" (and {len(left_out) - 1} more files)" if len(left_out) > 1 else ""
@@ -170,7 +157,7 @@ def draft_campaign(
         {quantity: unit for quantity, unit in units.items() if quantity in kept},
         _held_out(records),
         tuple(left_out),
-        _doubts([r.guess for r in records], answers),
+        doubts(read, answers.units),
         device,
     )
 
@@ -335,22 +322,3 @@ def _speed(record: Record) -> float:
     if record.displacement is None:
         return 0.0
     return float(np.ptp(record.displacement)) * fastest_motion(record.time, record.displacement)
-
-
-def _doubts(guesses: Sequence[TableGuess], answers: Answers) -> tuple[Doubt, ...]:
-    """Return what is unsure, each once."""
-    doubts: dict[tuple[str, str], Doubt] = {}
-    for table in guesses:
-        for quantity, guess in table.columns.items():
-            if guess.sure == UNSURE:
-                choices = (guess.header, *guess.others)
-                doubt = Doubt(quantity, "columns", guess.header, choices, guess.why)
-                doubts.setdefault((quantity, "columns"), doubt)
-            known = guess.unit_stated or guess.unit_named or quantity in answers.units
-            if not known:
-                kinds = {"time": ("s", "ms"), "displacement": ("m", "mm"), "force": ("N", "kN")}
-                choices = (guess.unit, *(u for u in kinds.get(quantity, ()) if u != guess.unit))
-                why = "no file states it; taken by the size of the values"
-                doubt = Doubt(quantity, "units", guess.unit, choices, why)
-                doubts.setdefault((quantity, "units"), doubt)
-    return tuple(doubts.values())

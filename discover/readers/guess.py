@@ -10,7 +10,7 @@ import numpy as np
 from discover.readers.columns import QUANTITIES, split_header
 from discover.readers.names import CANONICAL, LETTER, name_score
 from discover.readers.source import Source
-from discover.readers.units import check_unit, is_unit, to_si
+from discover.readers.units import is_unit, measures, to_si
 from models.checks import Array, InputError
 
 SURE, LIKELY, UNSURE = "sure", "likely", "unsure"
@@ -92,20 +92,12 @@ def _stated_unit(source: Source, index: int) -> str | None:
     return split_header(source.headers[index])[1] or source.units.get(index)
 
 
-def _unit_fits(unit: str, quantity: str) -> bool:
-    try:
-        check_unit(unit, QUANTITIES[quantity], name=quantity, where="")
-    except InputError:
-        return False
-    return True
-
-
 def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
     """Return the likeliest column by name and unit, or None where none speaks for itself."""
     scores: dict[int, tuple[float, float, bool]] = {}
     for index, header in enumerate(source.headers):
         unit = _stated_unit(source, index)
-        fitting = unit is not None and _unit_fits(unit, quantity)
+        fitting = unit is not None and measures(unit, QUANTITIES[quantity])
         if index in taken or (unit is not None and is_unit(unit) and not fitting):
             continue
         name = name_score(split_header(header)[0], quantity)
@@ -139,7 +131,7 @@ def _guess(
         sure = UNSURE
         reasons.append("others are as likely")
     unit = _stated_unit(source, index)
-    stated = unit is not None and _unit_fits(unit, quantity)
+    stated = unit is not None and measures(unit, QUANTITIES[quantity])
     named = None if stated else _named_unit(header, quantity)
     return Guess(
         quantity,
@@ -156,7 +148,7 @@ def _guess(
 def _named_unit(header: str, quantity: str) -> str | None:
     """Return the unit that a header ends in after an underscore, or None."""
     name, _, last = header.strip().rpartition("_")
-    return last if name and last and _unit_fits(last, quantity) else None
+    return last if name and last and measures(last, QUANTITIES[quantity]) else None
 
 
 def _values(source: Source, index: int) -> Array | None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from discover.readers.names import known_name
 from discover.readers.numerals import clock_seconds
 from discover.readers.units import is_unit
 
@@ -126,15 +127,24 @@ def _is_header(fields: Sequence[str], width: int) -> bool:
     return len(fields) == width or len(named) > 1
 
 
-def _units(fields: Sequence[str], width: int) -> dict[int, str] | None:
-    """Return a row's units by column, or None where it is no row of units."""
-    named = {i: f for i, f in enumerate(fields) if f and f != "-"}
-    if len(fields) > width or len(named) < min(2, width):
+def _units(fields: Sequence[str], names: Sequence[str]) -> dict[int, str] | None:
+    """Return a row's units by column, or None where it is no row of units below the names.
+
+    Every text of it is a unit; or only some are, but the names are names and its texts are none.
+    A number, and what stands beside the names, is foreign to it.
+    """
+    named = {i: f for i, f in enumerate(fields[: len(names)]) if f and f != "-" and names[i]}
+    texts = {i: f for i, f in named.items() if not _number_like(f)}
+    if len(texts) < min(2, len(names)):
         return None
-    plain = {i: f[1:-1].strip() if f[0] in _UNIT_MARKS else f for i, f in named.items()}
-    bare = [plain[i] for i, f in named.items() if f[0] not in _UNIT_MARKS]
-    if not all(is_unit(text) for text in bare):
-        return None
+    plain = {i: f[1:-1].strip() if f[0] in _UNIT_MARKS else f for i, f in texts.items()}
+    bare = [plain[i] for i, f in texts.items() if f[0] not in _UNIT_MARKS]
+    units = sum(is_unit(text) for text in bare)
+    if units < len(bare):
+        as_names = sum(known_name(text) for text in bare)
+        above = sum(known_name(names[i]) for i in texts)
+        if 2 * units < len(bare) or units < min(2, len(bare)) or above <= as_names:
+            return None
     return {i: text for i, text in plain.items() if text}
 
 
@@ -142,24 +152,36 @@ def _heading(rows: Rows, begin: int, first: int) -> tuple[int | None, dict[int, 
     """Return the header's row, the units by column, and the row of the first sample."""
     width = len(_trimmed(rows.fields(first)))
     above = list(_filled(rows, begin, first))[::-1]
-    texts = [_trimmed(rows.fields(row)) for row in above[:2]]
-    if len(texts) > 1 and _is_header(texts[1], width):
-        units = _units(texts[0], width)
-        if units is not None:
-            return above[1], units, first
-    if texts and _is_header(texts[0], width):
-        return above[0], {}, first
     marked = [row for row in range(begin, first) if rows.comment[row] and not rows.blank[row]]
-    for row in marked[::-1][:2]:
-        fields = _trimmed(rows.fields(row))
-        if len(fields) == width and _is_header(fields, width):
-            return row, {}, first
+    named = [row for row in above[:3] if sum(map(bool, _trimmed(rows.fields(row)))) > 1]
+    found = (
+        _named(rows, above[:2], width)
+        or _named(rows, named[:2], width, whole=True)  # below which a lone word opens the samples
+        or _named(rows, marked[::-1][:2], width, whole=True)
+    )
+    if found is not None:
+        return *found, first
     if above:  # rows that are damaged follow the header: they are for reading to complain of
         top = _trimmed(rows.fields(above[-1]))
         damaged = len(top) == width or all(_is_sample(rows, row) for row in above[:-1])
         if damaged and _is_header(top, width):
             return above[-1], {}, above[-1] + 1
     return None, {}, first
+
+
+def _named(
+    rows: Rows, near: Sequence[int], width: int, *, whole: bool = False
+) -> tuple[int, dict[int, str]] | None:
+    """Return which of the two rows above is the header, nearest first, and the units by column."""
+    texts = [_trimmed(rows.fields(row)) for row in near]
+    fine = [_is_header(text, width) and not (whole and len(text) != width) for text in texts]
+    if len(near) > 1 and fine[1]:
+        units = _units(texts[0], texts[1])
+        if units is not None:
+            return near[1], units
+    if not whole:
+        fine = fine[:1]
+    return next(((row, {}) for row, good in zip(near, fine, strict=False) if good), None)
 
 
 def _end(rows: Rows, first: int) -> int:

@@ -13,6 +13,8 @@ _WORDS = {
     "acceleration": "acceleration accel acc a beschleunigung",
     "temperature": "temperature temp temperatur oil",
 }
+NAMED = tuple(_WORDS)
+"""Quantities whose names are known."""
 _COMMANDS = set(
     "command cmd commanded setpoint soll sollwert target reference ref demand consigne".split()
 )
@@ -55,3 +57,14 @@ def name_score(header: str, quantity: str) -> float:
         ):
             score = max(score, PART)
     return 0.5 * score if _COMMANDS & set(tokens) else score
+
+
+def known_name(header: str) -> bool:
+    """Return whether a header's name is one of some quantity.
+
+    Examples
+    --------
+    >>> known_name("Axial Force"), known_name("Operator")
+    (True, False)
+    """
+    return any(name_score(header, quantity) for quantity in NAMED)

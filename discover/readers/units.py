@@ -141,6 +141,21 @@ def check_unit(text: object, kind: str, *, name: str, where: str) -> str:
     return text
 
 
+def measures(text: str, kind: str) -> bool:
+    """Return whether a text is a unit of a kind.
+
+    Examples
+    --------
+    >>> measures("kN", "force"), measures("kN", "length"), measures("Force", "force")
+    (True, False, False)
+    """
+    try:
+        _conversion(text, kind)
+    except ValueError:
+        return False
+    return True
+
+
 def same_unit(first: str, second: str, kind: str) -> bool:
     """Return whether two checked units are the same.
 

@@ -148,6 +148,20 @@ def test_what_no_file_states_is_told_and_can_be_answered(
     assert found.device is not None
 
 
+def test_a_channel_that_is_another_in_one_file_is_told(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    x, force = _test(2.0)
+    for name, load in (("a", "Load [kN]"), ("b", "Load [kN]"), ("c", "Load")):
+        other = "Force" if name == "c" else "Signal"
+        table = np.column_stack([TIME, 1e3 * x, 1e-3 * force, 2e-3 * force])
+        header = f"Time [s],Stroke [mm],{load},{other} [kN]"
+        np.savetxt(here / f"{name}.csv", table, delimiter=",", header=header, comments="")
+    assert main(["init", "."]) == 0
+    told = "the column of force, Load (Force [kN] is taken in c.csv, which has Load too, as 2 of 3"
+    assert told in capsys.readouterr().out
+
+
 def test_a_unit_at_the_end_of_a_name_is_taken(
     here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

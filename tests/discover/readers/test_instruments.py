@@ -100,6 +100,16 @@ def test_a_workbook_with_cover_preamble_and_unit_row(tmp_path: Path) -> None:
         _campaign(tmp_path, cells.replace("A4:C1205", "A1:B3"))
 
 
+def test_a_number_beside_the_row_of_units_is_no_sample(tmp_path: Path) -> None:
+    import openpyxl
+
+    instruments.workbook(tmp_path / "a.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    book["Test 1"]["G4"], book["Test 1"]["G5"] = "Peak force", 1.2
+    book.save(tmp_path / "a.xlsx")
+    _check(_campaign(tmp_path, '[[records]]\nfile = "a.xlsx"\nsheet = "Test 1"\n'), 1.0)
+
+
 def test_a_wrong_cell_is_named(tmp_path: Path) -> None:
     import openpyxl
 
@@ -210,10 +220,13 @@ def test_labview_segments_are_tests_and_a_library_reads_the_same(tmp_path: Path)
 
 
 def _table(
-    header: str, *, sep: str, decimal: str = ".", end: str = "\n", timed: bool = True
-) -> str:
+    header: str, *, sep: str, decimal: str = ".", end: str = "\n", timed: bool = True,
+    before: str = "", more: str = "",
+) -> str:  # fmt: skip
     columns = [*([TIME] if timed else []), STROKE, LOAD]
-    lines = [sep.join(f"{v:.9f}" for v in row) for row in zip(*columns, strict=True)]
+    lines = [
+        before + sep.join(f"{v:.9f}" for v in row) + more for row in zip(*columns, strict=True)
+    ]
     return header + end + end.join(lines).replace(".", decimal) + end
 
 
@@ -264,6 +277,37 @@ TEXTS = {
         "MTS793|BTW|ENU|1|2|.|/|:|1|0|0|A\n\nData Acquisition: Timed\nStation Name: 100 kN\n"
         + _table("Time\tAxial Displacement\tAxial Force\nSec\tmm\tkN", sep="\t"),
         '[columns]\ndisplacement = "Axial Displacement"\nforce = "Axial Force"\n' + ONE,
+    ),
+    "a unit that is none, a blank before the first": (
+        _table(
+            "Running Time\tAxial Displacement\tAxial Force\tAxial Count\n s\tmm\tkN\tsegments",
+            sep="\t", more="\t7",
+        ),
+        '[columns]\ntime = "Running Time"\ndisplacement = "Axial Displacement"\n'
+        'force = "Axial Force"\n' + ONE,
+    ),
+    "names and units as comments": (
+        _table("% time displacement force\n% s mm kN", sep=" "), ONE
+    ),
+    "quantity over unit": (
+        _table("t / s;s / mm;F / kN", sep=";", decimal=","),
+        '[columns]\ntime = "t / s"\ndisplacement = "s / mm"\nforce = "F"\n' + ONE,
+    ),
+    "quantity over unit without blanks": (
+        _table("Zeit/s;Weg/mm;Kraft/kN", sep=";", decimal=","),
+        '[columns]\ntime = "Zeit"\ndisplacement = "Weg"\nforce = "Kraft"\n' + ONE,
+    ),
+    "a preamble of as many words above names that are units too": (
+        _table("Operator;Meier;Lab\nt;x;F", sep=";"),
+        '[columns]\ntime = "t"\ndisplacement = "x"\nforce = "F"\n'
+        '[units]\ntime = "s"\ndisplacement = "mm"\nforce = "kN"\n' + ONE,
+    ),
+    "ControlDesk, labels in the first column": (
+        "descriptor;;;\n;XAxis=\"Time\";;\n\ntrace_settings;;;\n"
+        'path;"Model Root/Time";"Model Root/Out1";"Model Root/Out2"\n'
+        'name;"Time";"x_mm";"F_N"\nunit;"s";"mm";"kN"\n'
+        + _table("trace_values;;;", sep=";", before=";"),
+        '[columns]\ndisplacement = "x_mm"\nforce = "F_N"\n' + ONE,
     ),
 }  # fmt: skip
 

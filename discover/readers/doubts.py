@@ -1,0 +1,86 @@
+"""What of a drafted campaign is unsure, so that the user should look at it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from discover.readers.columns import find_column, split_header
+from discover.readers.guess import UNSURE, Guess, TableGuess
+from discover.readers.names import NAMED
+from discover.readers.source import Source
+from models.checks import InputError, printable
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """A guess that the user should look at."""
+
+    quantity: str
+    """Column that it is of."""
+    key: str
+    """"columns" or "units"."""
+    taken: str
+    """The header or the unit that was taken."""
+    choices: tuple[str, ...]
+    """What it may be besides, the taken one first."""
+    why: str
+    """In words."""
+
+
+def doubts(
+    tables: Sequence[tuple[Source, TableGuess]], units: Mapping[str, str]
+) -> tuple[Doubt, ...]:
+    """Return what is unsure, each once.
+
+    Parameters
+    ----------
+    tables : sequence of (Source, TableGuess)
+        The records' tables, and what their columns are taken for.
+    units : mapping
+        By quantity, as the user says.
+    """
+    found: dict[tuple[str, str], Doubt] = {}
+    for _, table in tables:
+        for quantity, guess in table.columns.items():
+            for doubt in _of_guess(guess, told=quantity in units):
+                found.setdefault((quantity, doubt.key), doubt)
+    for doubt in _of_changes(tables):
+        found.setdefault((doubt.quantity, doubt.key), doubt)
+    return tuple(found.values())
+
+
+def _of_guess(guess: Guess, *, told: bool) -> Iterator[Doubt]:
+    if guess.sure == UNSURE:
+        choices = (guess.header, *guess.others)
+        yield Doubt(guess.quantity, "columns", guess.header, choices, guess.why)
+    if not (guess.unit_stated or guess.unit_named or told):
+        kinds = {"time": ("s", "ms"), "displacement": ("m", "mm"), "force": ("N", "kN")}
+        others = (u for u in kinds.get(guess.quantity, ()) if u != guess.unit)
+        why = "no file states it; taken by the size of the values"
+        yield Doubt(guess.quantity, "units", guess.unit, (guess.unit, *others), why)
+
+
+def _of_changes(tables: Sequence[tuple[Source, TableGuess]]) -> Iterator[Doubt]:
+    """Yield a doubt where a file's column is another than in most files, which it has too."""
+    for quantity in NAMED:
+        own = [(s, g.columns[quantity]) for s, g in tables if quantity in g.columns]
+        names = Counter(split_header(guess.header)[0] for _, guess in own)
+        usual = names.most_common(1)[0][0] if names else ""
+        for source, guess in own:
+            name = split_header(guess.header)[0]
+            if name != usual and _has(source, quantity, usual):
+                why = (
+                    f"{printable(guess.header)} is taken in {source.name}, which has"
+                    f" {printable(usual)} too, as {names[usual]} of {len(own)} have it"
+                )
+                yield Doubt(quantity, "columns", usual, (usual, name), why)
+                break
+
+
+def _has(source: Source, quantity: str, header: str) -> bool:
+    try:
+        return find_column(source, quantity, header) is not None
+    except InputError:
+        return True
