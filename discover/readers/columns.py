@@ -52,6 +52,8 @@ class Columns:
     """Headers that are nearly a quantity's name but not read, with that name."""
     step: float | None = None
     """s, the sampling interval that the times were made of; None where they were read."""
+    notes: tuple[str, ...] = ()
+    """What to tell of how they were read."""
 
     @property
     def assumed(self) -> tuple[str, ...]:
@@ -173,7 +175,8 @@ def read_columns(
         count = np.arange(values["force"].size, dtype=np.float64)
         raw_time = made * count + (source.start if step is None else 0.0)
         values["time"] = raw_time
-    return Columns(values, raw_time, chosen, _unused(source, found), made)
+    notes = tuple(source.notes[index] for index in found.values() if index in source.notes)
+    return Columns(values, raw_time, chosen, _unused(source, found), made, notes)
 
 
 def _unused(source: Source, found: Mapping[str, int]) -> dict[str, str]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from discover.readers.names import known_name
-from discover.readers.numerals import clock_seconds
+from discover.readers.numerals import is_number
 from discover.readers.units import is_unit
 
 Mask = NDArray[np.bool_]
@@ -84,21 +84,13 @@ def _trimmed(fields: Sequence[str]) -> list[str]:
     return kept
 
 
-def _number_like(field: str) -> bool:
-    try:
-        float(field.replace(",", "."))
-    except ValueError:
-        return clock_seconds(field) is not None
-    return True
-
-
 def _is_sample(rows: Rows, row: int) -> bool:
     if rows.blank[row] or rows.comment[row]:
         return False
     fields = [f for f in _trimmed(rows.fields(row)) if f]
-    if not fields or not _number_like(fields[0]):
+    if not fields or not is_number(fields[0]):
         return False
-    return len(fields) == 1 or sum(_number_like(f) for f in fields) > 1
+    return len(fields) == 1 or sum(is_number(f) for f in fields) > 1
 
 
 def _filled(rows: Rows, begin: int, end: int) -> Iterator[int]:
@@ -122,7 +114,7 @@ def _first_sample(rows: Rows, begin: int) -> int | None:
 
 def _is_header(fields: Sequence[str], width: int) -> bool:
     named = [f for f in fields if f]
-    if not named or any(_number_like(f) for f in named):
+    if not named or any(is_number(f) for f in named):
         return False
     return len(fields) == width or len(named) > 1
 
@@ -134,7 +126,7 @@ def _units(fields: Sequence[str], names: Sequence[str]) -> dict[int, str] | None
     A number, and what stands beside the names, is foreign to it.
     """
     named = {i: f for i, f in enumerate(fields[: len(names)]) if f and f != "-" and names[i]}
-    texts = {i: f for i, f in named.items() if not _number_like(f)}
+    texts = {i: f for i, f in named.items() if not is_number(f)}
     if len(texts) < min(2, len(names)):
         return None
     plain = {i: f[1:-1].strip() if f[0] in _UNIT_MARKS else f for i, f in texts.items()}
@@ -193,7 +185,7 @@ def _end(rows: Rows, first: int) -> int:
         after = _first_sample(rows, row)
         if after is None:
             texts = [_trimmed(rows.fields(r)) for r in _filled(rows, row, rows.count)]
-            if not any(_number_like(f) for text in texts for f in text if f):
+            if not any(is_number(f) for text in texts for f in text if f):
                 return row
         elif _heading(rows, row, after)[0] is not None:
             return row

@@ -8,6 +8,9 @@ import re
 EMPTY = ("", "nan", "na", "n/a", "null", "none", "-", "#n/a")
 """Fields that hold nothing, in lower case."""
 
+_GROUPED = re.compile(
+    r"[+-]?\d{1,3}(?:(?:\.\d{3})+(?:,\d*)?|(?:,\d{3})+(?:\.\d*)?)"
+)  # with thousands separators
 _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d?)-(\d\d?)[ T]|(\d\d?)[./](\d\d?)[./](\d{4}) )?"
     r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9})?)Z?"
@@ -15,21 +18,42 @@ _CLOCK = re.compile(
 _FIRST_DAY = datetime.date(2000, 1, 1).toordinal()  # from which days are counted
 
 
-def value(field: str, decimal: str) -> float | None:
+def value(field: str, decimal: str, thousands: str = "") -> float | None:
     """Return a field's number, NaN of an empty one, None of text; a time of day is in seconds.
 
     Examples
     --------
     >>> value("1,5", ","), value("12:00:01.5", "."), value("on", ".")
     (1.5, 43201.5, None)
+    >>> value("-1.030,5", ",", "."), value("1.03,5", ",", ".")
+    (-1030.5, None)
     """
     text = field.strip()
     if text.lower() in EMPTY:
         return float("nan")
+    if thousands and thousands in text:
+        if not _GROUPED.fullmatch(text):
+            return None
+        text = text.replace(thousands, "")
     try:
         return float(text.replace(decimal, "."))
     except ValueError:
         return clock_seconds(text)
+
+
+def is_number(field: str) -> bool:
+    """Return whether a field is a number or a time of day, whatever its marks.
+
+    Examples
+    --------
+    >>> is_number("1,5"), is_number("1.030,25"), is_number("12:00:01"), is_number("1.2.3")
+    (True, True, True, False)
+    """
+    try:
+        float(field.replace(",", "."))
+    except ValueError:
+        return bool(_GROUPED.fullmatch(field)) or clock_seconds(field) is not None
+    return True
 
 
 def clock_seconds(text: str) -> float | None:

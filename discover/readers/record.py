@@ -123,6 +123,7 @@ def _header_findings(columns: Columns, file: str) -> list[Finding]:
         )
         for header, quantity in columns.unused.items()
     ]
+    findings += [Finding("note", text, file) for text in columns.notes]
     if columns.step is not None:
         text = f"it has no time column: the times are made of its {1.0 / columns.step:.6g} Hz"
         findings.append(Finding("note", text, file))

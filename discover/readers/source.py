@@ -56,6 +56,8 @@ class Source:
     pieces: Callable[[Sequence[int]], Iterator[list[Array]]] | None = None
     """The same columns as `read`, a piece (B,) of each at a time; None where a file has to be read
     whole."""
+    notes: Mapping[int, str] = field(default_factory=dict)
+    """What to tell of a column where it is read, by its index among the headers."""
 
 
 @dataclass(frozen=True)

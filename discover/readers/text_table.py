@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,13 @@ from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
 from discover.readers.layout import Layout, Rows, find_tables
 from discover.readers.line_kinds import line_kinds
-from discover.readers.numerals import value
+from discover.readers.notation import (
+    Notation,
+    may_have_thousands,
+    notations,
+    thousands_note,
+)
+from discover.readers.numerals import EMPTY, is_number, value
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import Book, Source
 from models.checks import Array, InputError, shown
@@ -157,9 +164,13 @@ def _delimiter(text: Text, rows: np.ndarray, *, numbers: bool) -> str:
         same = [f for f in split if len(f) == usual]
         if usual < 2 or (numbers and len(same) < 0.8 * len(split)):
             continue
-        if not numbers or all(value(f, ",") is not None for fields in same for f in fields):
+        if not numbers or all(_is_cell(f) for fields in same for f in fields):
             return delimiter
     return ","
+
+
+def _is_cell(field: str) -> bool:
+    return is_number(field) or field.lower() in EMPTY
 
 
 def _split_line(line: str, delimiter: str) -> list[str]:
@@ -171,6 +182,16 @@ def _split_line(line: str, delimiter: str) -> list[str]:
         return [field.strip() for field in next(csv.reader([line], delimiter=delimiter), [])]
     except csv.Error:  # a field beyond what the module takes
         return [field.strip() for field in line.split(delimiter)]
+
+
+def _split_all(body: memoryview, delimiter: str) -> Iterator[list[str]]:
+    """Return the fields of all lines, comments too."""
+    lines = io.StringIO(_decoded(bytes(body)))
+    if delimiter == SPACES:
+        yield from (line.split() for line in lines)
+        return
+    with contextlib.suppress(csv.Error):  # which reading, line by line, tells with its place
+        yield from csv.reader(lines, delimiter=delimiter)
 
 
 def _split_blanks(line: str) -> list[str]:
@@ -211,12 +232,18 @@ def _source(text: Text, rows: Rows, layout: Layout, name: str, part: str) -> Sou
     body = memoryview(text.data)[text.starts[layout.first] : text.starts[layout.last]]
     headers, decimal = fields_of(text, layout)
     width = len(headers)
+    written: Mapping[int, Notation] = {}
+    if may_have_thousands(body, text.delimiter):
+        written = notations(_split_all(body, text.delimiter))
 
     def read(indices: Sequence[int]) -> list[Array]:
-        fast = _read_fast(body, width, indices, text.delimiter, decimal)
-        if fast is not None:
-            return fast
-        return _read_slow(text, rows, layout, headers, indices, decimal, name)
+        own = [written.get(i, Notation(decimal)) for i in indices]
+        plain = {n.decimal for n in own} if not any(n.thousands for n in own) else ()
+        if len(plain) == 1:
+            fast = _read_fast(body, width, indices, text.delimiter, *plain)
+            if fast is not None:
+                return fast
+        return _read_slow(text, rows, layout, headers, dict(zip(indices, own, strict=True)), name)
 
     def place(row: int) -> str:
         for count, at in enumerate(_samples(rows, layout)):
@@ -225,8 +252,10 @@ def _source(text: Text, rows: Rows, layout: Layout, name: str, part: str) -> Sou
         return f"sample {row + 1}"
 
     return Source(
-        name, headers, read, place, part, units=layout.units, step=stated_step(layout.notes)
-    )
+        name, headers, read, place, part, units=layout.units, step=stated_step(layout.notes),
+        notes={i: thousands_note(headers[i], n) for i, n in written.items()
+               if n.thousands and i < width},
+    )  # fmt: skip
 
 
 def fields_of(text: Text, layout: Layout) -> tuple[tuple[str, ...], str]:
@@ -289,12 +318,11 @@ def _read_slow(
     rows: Rows,
     layout: Layout,
     headers: tuple[str, ...],
-    indices: Sequence[int],
-    decimal: str,
+    written: Mapping[int, Notation],
     name: str,
 ) -> list[Array]:
     """Return the columns line by line, or say which line and column is wrong."""
-    columns: list[list[float]] = [[] for _ in indices]
+    columns: list[list[float]] = [[] for _ in written]
     least = len(headers)
     while least and not headers[least - 1]:
         least -= 1
@@ -309,11 +337,23 @@ def _read_slow(
                 found=str(len(fields)) + (more if len(fields) > len(headers) else ""),
                 where=where,
             )
-        for column, index in zip(columns, indices, strict=True):
-            found = value(fields[index], decimal)
+        for column, (index, own) in zip(columns, written.items(), strict=True):
+            found = value(fields[index], own.decimal, own.thousands)
             if found is None:
                 raise InputError(
-                    headers[index], expected="a number", found=shown(fields[index]), where=where
-                )
+                    headers[index], expected=_expected(fields[index], own),
+                    found=shown(fields[index]), where=where,
+                )  # fmt: skip
             column.append(found)
     return [np.array(column) for column in columns]
+
+
+def _expected(field: str, notation: Notation) -> str:
+    """Return what a field should have been."""
+    if not is_number(field):
+        return "a number"
+    parted = f" and thousands by {notation.thousands!r}" if notation.thousands else ""
+    return (
+        f"a number with decimals parted by {notation.decimal!r}{parted}, as the rest shows; save"
+        " the file again with one decimal mark and without thousands separators"
+    )

@@ -319,6 +319,68 @@ def test_text_as_loggers_write_it(tmp_path: Path, name: str) -> None:
     _check(_campaign(tmp_path, toml), 1.0)
 
 
+EACH = list(zip(TIME, STROKE, LOAD, strict=True))
+
+
+def _german(text: str) -> str:
+    return text.replace(",", "_").replace(".", ",").replace("_", ".")
+
+
+THOUSANDS = {
+    "quoted": (
+        "Time [s],Displacement [mm],Force [N]",
+        lambda t, x, f: f'{t:.5f},{x:.5f},"{f:,.4f}"',
+    ),
+    "tabs, forces without decimals": (
+        "Time [s]\tDisplacement [mm]\tForce [N]",
+        lambda t, x, f: f"{t:.5f}\t{x:.4f}\t{f:,.0f}",
+    ),
+    "blanks": ("Time [s] Displacement [mm] Force [N]", lambda t, x, f: f"{t} {x:.4f} {f:,.1f}"),
+    "German, forces without decimals": (
+        "Time [s];Displacement [mm];Force [N]",
+        lambda t, x, f: _german(f"{t:.5f};{x:.4f};{f:,.0f}"),
+    ),
+    "German": (
+        "Time [s];Displacement [µm];Force [N]",
+        lambda t, x, f: _german(f"{t:.5f};{1e3 * x:,.2f};{f:,.3f}"),
+    ),
+    "millions": (
+        "Time [s];Displacement [mm];Force [mN]",
+        lambda t, x, f: f"{t:.5f};{x:.4f};{1e3 * f:,.0f}",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", THOUSANDS)
+def test_thousands_separators_are_taken_out(tmp_path: Path, name: str) -> None:
+    header, write = THOUSANDS[name]
+    rows = [write(t, x, 3e4 * f) for t, x, f in EACH]
+    (tmp_path / "a.csv").write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
+    found = _campaign(tmp_path, ONE)
+    (record,) = found.records
+    np.testing.assert_allclose(record.time, TIME, atol=1e-9)
+    np.testing.assert_allclose(record.displacement, 1e-3 * STROKE, atol=1e-7)
+    np.testing.assert_allclose(record.force, 3e4 * LOAD, atol=0.51)
+    assert any("has thousands separators: '" in f.text for f in found.findings)
+
+
+def test_decimals_of_another_mark_in_each_column_are_no_thousands(tmp_path: Path) -> None:
+    rows = [f"{t:.3f};{x:.3f};{_german(f'{f:.3f}')}" for t, x, f in EACH]
+    (tmp_path / "a.csv").write_text("\n".join(["time [s];displacement [mm];force [kN]", *rows]))
+    found = _campaign(tmp_path, ONE)
+    np.testing.assert_allclose(found.records[0].force, 1e3 * LOAD, atol=0.51)
+    assert found.findings == ()
+
+
+def test_marks_that_can_be_read_in_two_ways_are_refused(tmp_path: Path) -> None:
+    rows = [f"{t:.3f};{x:.4f};{f:.4f}" for t, x, f in EACH]
+    rows[7] = rows[7].rpartition(";")[0] + ";0,25"
+    (tmp_path / "a.csv").write_text("\n".join(["time [s];displacement [mm];force [kN]", *rows]))
+    said = r"line 9: force \[kN\] must be a number with decimals parted by '.',.* got '0,25'"
+    with pytest.raises(InputError, match=said):
+        _campaign(tmp_path, ONE)
+
+
 def test_times_of_day_count_in_seconds(tmp_path: Path) -> None:
     clock = [f"17.05.2024 23:59:{58 + t:06.3f}" if t < 2.0 else
              f"18.05.2024 00:00:{t - 2.0:06.3f}" for t in TIME]  # fmt: skip

@@ -1,0 +1,129 @@
+"""Decimal marks told from thousands separators, column by column, by what the fields show."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+_MARKS = (".", ",")
+_OTHER = {".": ",", ",": "."}
+_MARKED = re.compile(r"[+-]?[\d.,]*\d[\d.,]*(?:[eE][+-]?\d+)?")
+_SHAPE = str.maketrans("0123456789", "1" * 10)
+_GROUPS = 3  # digits between thousands separators
+
+
+@dataclass
+class Evidence:
+    """What the fields of one column show of the marks in them, each with a field as an example."""
+
+    decimal: dict[str, str] = field(default_factory=dict)
+    """Marks that part decimals, surely."""
+    thousands: dict[str, str] = field(default_factory=dict)
+    """Marks that part thousands, surely."""
+    either: dict[str, str] = field(default_factory=dict)
+    """Marks before exactly three digits: they may be either."""
+
+    def take(self, text: str) -> None:
+        """Take in a field; one that is no number tells nothing."""
+        present = [mark for mark in _MARKS if mark in text]
+        if not present or not _MARKED.fullmatch(text):
+            return
+        if len(present) == 2:
+            last = max(_MARKS, key=text.rfind)
+            self.decimal.setdefault(last, text)
+            self.thousands.setdefault(_OTHER[last], text)
+            return
+        mark = present[0]
+        whole, _, part = text.lstrip("+-").partition(mark)
+        if mark in part:
+            self.thousands.setdefault(mark, text)
+        elif len(part) == _GROUPS and 1 <= len(whole) <= _GROUPS and whole[0] != "0":
+            self.either.setdefault(mark, text)
+        else:
+            self.decimal.setdefault(mark, text)
+
+
+@dataclass(frozen=True)
+class Notation:
+    """How a column writes numbers."""
+
+    decimal: str
+    """What parts decimals."""
+    thousands: str = ""
+    """What parts thousands, "" for nothing."""
+    example: str = ""
+    """A field with thousands."""
+
+
+def notations(rows: Iterable[Sequence[str]]) -> Mapping[int, Notation]:
+    """Return how each column of a table writes its numbers.
+
+    A mark that stands twice in a number, or before another mark, parts thousands; one before any
+    other than three digits parts decimals. One that is always before three digits parts thousands
+    where the other columns part decimals by the other mark.
+
+    Parameters
+    ----------
+    rows : iterable of sequence of str
+        Fields by column.
+
+    Examples
+    --------
+    >>> found = notations([("0,5", "-1.030", "1.250,5"), ("10,25", "345", "0,1")])
+    >>> [(n.decimal, n.thousands) for n in found.values()]
+    [(',', ''), (',', '.'), (',', '.')]
+    """
+    seen: dict[int, Evidence] = {}
+    met = set()
+    for row in rows:
+        for index, text in enumerate(row):
+            shape = (index, text.translate(_SHAPE), text.lstrip(" +-")[:1] == "0")
+            if shape not in met:  # a million fields have some tens of shapes
+                met.add(shape)
+                seen.setdefault(index, Evidence()).take(text.strip())
+    shown = {mark for column in seen.values() for mark in column.decimal}
+    return {index: _notation(column, shown) for index, column in sorted(seen.items())}
+
+
+def _notation(column: Evidence, shown: set[str]) -> Notation:
+    """Return a column's notation, with the marks that surely part decimals in any column."""
+    decimals = set(column.decimal) | {_OTHER[mark] for mark in column.thousands}
+    if not decimals and len(column.either) == 1:
+        (mark,) = column.either
+        decimals = shown if shown == {_OTHER[mark]} else {mark}
+    if len(decimals) != 1 or decimals & set(column.thousands):
+        return Notation(".")  # whose other fields are for reading to complain of
+    (decimal,) = decimals
+    parted = {**column.either, **column.thousands}.get(_OTHER[decimal], "")
+    return Notation(decimal, _OTHER[decimal] if parted else "", parted)
+
+
+def thousands_note(header: str, notation: Notation) -> str:
+    """Return what to tell of a column with thousands separators.
+
+    Examples
+    --------
+    >>> thousands_note("Kraft [N]", Notation(",", ".", "-1.030"))
+    "column 'Kraft [N]' has thousands separators: '-1.030' is read as -1030"
+    """
+    plain = notation.example.replace(notation.thousands, "").replace(notation.decimal, ".")
+    return (
+        f"column {header!r} has thousands separators: {notation.example!r} is read as"
+        f" {float(plain):.12g}"
+    )
+
+
+def may_have_thousands(body: bytes | memoryview, delimiter: str) -> bool:
+    r"""Return whether a text's samples may hold thousands separators, in one look at its bytes.
+
+    Examples
+    --------
+    >>> may_have_thousands(b"0,5;1,25\n", ";"), may_have_thousands(b'0.5,"1,250.5"\n', ",")
+    (False, True)
+    """
+    if delimiter == ",":
+        return re.search(rb'"\s*[+-]?\d+,\d', body) is not None
+    if re.search(rb"[.]", body) and re.search(rb",", body):
+        return True
+    return re.search(rb"\d([.,])\d{3}\1\d{3}", body) is not None
