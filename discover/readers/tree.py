@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -61,7 +62,7 @@ def tree_book(name: str, leaves: list[Leaf], *, joint: str = "/") -> Book:
     InputError
         Where it holds no numeric vector.
     """
-    vectors, notes = _vectors(leaves)
+    vectors, notes = _vectors(_described(leaves))
     if not vectors:
         raise InputError("content", expected="numeric vectors", found="none", where=name)
     groups: dict[tuple[str, ...], list[Leaf]] = {}
@@ -104,6 +105,39 @@ def _members(value: Any) -> list[Any]:
         value = list(value.ravel())
     nested = isinstance(value, list) and any(isinstance(m, _NESTED) for m in value)
     return list(value) if nested else []
+
+
+def _described(leaves: list[Leaf]) -> list[Leaf]:
+    """Return the leaves with the units, and the names, that texts beside them state.
+
+    A unit is the text ``units.force`` beside ``force``, or ``Unit`` beside the only vector of a
+    structure, whose ``Name`` then stands for it.
+    """
+    texts = {
+        tuple(part.lower() for part in leaf.path): leaf.value.strip()
+        for leaf in leaves
+        if isinstance(leaf.value, str) and leaf.value.strip()
+    }
+    if not texts:
+        return leaves
+    held = Counter(leaf.path[:-1] for leaf in leaves if _is_vector(leaf.value))
+    result = []
+    for leaf in leaves:
+        *group, own = (part.lower() for part in leaf.path)
+        alone = held[leaf.path[:-1]] == 1 and _is_vector(leaf.value)
+        path, unit = leaf.path, leaf.unit
+        for word in ("unit", "units"):
+            unit = unit or texts.get((*group, word, own), "")
+            unit = unit or (texts.get((*group, word), "") if alone else "")
+        if alone and group and (*group, "name") in texts:
+            path = (*leaf.path[:-2], texts[*group, "name"])
+        result.append(replace(leaf, path=path, unit=unit))
+    return result
+
+
+def _is_vector(value: Any) -> bool:
+    array = _numeric(value)
+    return array is not None and array.size > 1
 
 
 def _vectors(leaves: list[Leaf]) -> tuple[list[Leaf], dict[tuple[str, ...], float]]:

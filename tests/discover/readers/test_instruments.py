@@ -9,6 +9,7 @@ from pathlib import Path
 import lvm_read
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from discover.readers import read_campaign
 from discover.records import Campaign
@@ -132,6 +133,17 @@ def test_matlab_7_3_structures(tmp_path: Path) -> None:
     found = _campaign(tmp_path, toml)
     _check(found, 1.0, 0.5)
     assert [r.file for r in found.records] == ["a.mat [run1]", "a.mat [run2]"]
+
+
+def test_matlab_structures_that_state_units_and_names(tmp_path: Path) -> None:
+    channels = np.zeros(2, dtype=[("Name", "O"), ("Unit", "O"), ("Data", "O")])
+    channels[0], channels[1] = ("Displacement", "mm", STROKE), ("Force", "kN", LOAD)
+    desk = {"X": {"Name": "Time", "Unit": "s", "Data": TIME}, "Y": channels}
+    units = {"time": "s", "displacement": "mm", "force": "kN"}
+    plain = {"time": TIME, "displacement": STROKE, "force": LOAD, "units": units, "by": "us"}
+    for content in (desk, plain):
+        savemat(tmp_path / "a.mat", {"rec": content})
+        _check(_campaign(tmp_path, '[[records]]\nfile = "a.mat"\n'), 1.0)
 
 
 def test_hdf5_groups_with_units_and_rate_as_attributes(tmp_path: Path) -> None:
