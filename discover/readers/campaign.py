@@ -25,6 +25,7 @@ from discover.readers.tables import (
     read_column_units,
     read_device,
     read_entries,
+    read_guessed_units,
     read_rig,
     read_system,
 )
@@ -76,7 +77,8 @@ def read_campaign(path: str | Path) -> Campaign:
     if given.is_file() and given.suffix.lower() in OPENERS:
         title = given.stem
         draft = draft_campaign(given.parent, [given.name], title=title, answers=Answers({}, {}))
-        return _campaign(given.parent, draft.toml().encode(), str(path), _guesses(draft))
+        content = draft.toml(marked=False).encode()
+        return _campaign(given.parent, content, str(path), _guesses(draft))
     if not folder.is_dir():
         raise InputError(
             str(path),
@@ -119,7 +121,8 @@ def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Find
         expected = f"text of at most {_LONGEST_TITLE} characters"
         raise InputError("title", expected=expected, found=shown(title), where=CAMPAIGN_FILE)
     names = read_column_names(table.get("columns", {}))
-    units = read_column_units(table.get("units", {}))
+    stated, guessed = read_guessed_units(table.get("units", {}))
+    units = read_column_units(stated)
     device = read_device(table["device"]) if "device" in table else None
     rig = read_rig(table["rig"]) if "rig" in table else None
     system = read_system(table["system"]) if "system" in table else None
@@ -131,6 +134,7 @@ def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Find
         read.take(entry)
     read.finish(len(entries))
     records, findings = read.records, [*findings, *read.findings]
+    findings += _guessed_units(units, guessed, read.read_units)
     _check_used(names, entries, records)
     if system is not None and not any(system.input in r.inputs for r in records):
         text = f"[system] takes {system.input} as its input, but no record has that column"
@@ -146,6 +150,22 @@ def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Find
         source=source,
         findings=merged(findings, len(records)),
     )
+
+
+def _guessed_units(
+    units: Mapping[str, str], guessed: Sequence[str], read: Sequence[Mapping[str, str | None]]
+) -> list[Finding]:
+    """Return what to tell of units in ``[units]`` that `inerter init` guessed."""
+    own = [quantity for quantity in guessed if any(quantity in found for found in read)]
+    if not own:
+        return []
+    listed = ", ".join(f"{units[quantity]} for {quantity}" for quantity in own)
+    text = (
+        f"no file states the unit of {' and '.join(own)}: `inerter init` guessed {listed} by the"
+        " size of the values; correct [units] of campaign.toml where it is wrong, and take out of"
+        " its `guessed` what you know"
+    )
+    return [Finding("warning", text)]
 
 
 class _Reading:

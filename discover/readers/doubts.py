@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from discover.readers.columns import find_column, split_header
@@ -29,33 +29,29 @@ class Doubt:
     """In words."""
 
 
-def doubts(
-    tables: Sequence[tuple[Source, TableGuess]], units: Mapping[str, str]
-) -> tuple[Doubt, ...]:
+def doubts(tables: Sequence[tuple[Source, TableGuess]]) -> tuple[Doubt, ...]:
     """Return what is unsure, each once.
 
     Parameters
     ----------
     tables : sequence of (Source, TableGuess)
         The records' tables, and what their columns are taken for.
-    units : mapping
-        By quantity, as the user says.
     """
     found: dict[tuple[str, str], Doubt] = {}
     for _, table in tables:
         for quantity, guess in table.columns.items():
-            for doubt in _of_guess(guess, told=quantity in units):
+            for doubt in _of_guess(guess):
                 found.setdefault((quantity, doubt.key), doubt)
     for doubt in _of_changes(tables):
         found.setdefault((doubt.quantity, doubt.key), doubt)
     return tuple(found.values())
 
 
-def _of_guess(guess: Guess, *, told: bool) -> Iterator[Doubt]:
+def _of_guess(guess: Guess) -> Iterator[Doubt]:
     if guess.sure == UNSURE:
         choices = (guess.header, *guess.others)
         yield Doubt(guess.quantity, "columns", guess.header, choices, guess.why)
-    if not (guess.unit_stated or guess.unit_named or told):
+    if guess.unit_guessed:
         kinds = {"time": ("s", "ms"), "displacement": ("m", "mm"), "force": ("N", "kN")}
         others = (u for u in kinds.get(guess.quantity, ()) if u != guess.unit)
         why = "no file states it; taken by the size of the values"

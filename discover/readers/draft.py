@@ -11,7 +11,7 @@ import numpy as np
 
 from discover.readers.columns import find_column, split_header
 from discover.readers.doubts import Doubt, doubts
-from discover.readers.draft_units import common_units, own_units, settled
+from discover.readers.draft_units import common_units, guessed_units, own_units, settled
 from discover.readers.entries import Entry
 from discover.readers.fastest_motion import fastest_motion
 from discover.readers.formats import OPENERS, open_file
@@ -22,9 +22,10 @@ from discover.readers.toml_text import campaign_text
 from discover.record_kind import classify
 from discover.records import Finding, Record
 from discover.sine_fit import sine_steps
-from models.checks import InputError, printable
+from models.checks import InputError, nearest, printable, shown
 
 _QUARTER = 4  # records, of which one is held out
+_MOST_TOLD = 30  # headers
 _NO_TIME = "no column for time among"
 
 
@@ -77,13 +78,14 @@ class Draft:
     device: str = ""
     """A preset, "" for none."""
 
-    def toml(self) -> str:
-        """Return ``campaign.toml``, with why beside what was guessed."""
+    def toml(self, *, marked: bool = True) -> str:
+        """Return ``campaign.toml``, with why beside what was guessed, and units marked as such."""
         return campaign_text(
             title=self.title,
             device=self.device,
             columns=self.columns,
             units=self.units,
+            guessed=guessed_units([r.guess for r in self.records], self.units) if marked else (),
             tests=[(record.entry, record.guess) for record in self.records],
         )
 
@@ -113,6 +115,7 @@ def draft_campaign(
     """
     found: list[tuple[Entry, Source, TableGuess]] = []
     left_out: list[tuple[str, str]] = []
+    headers: list[str] = []
     for file in files:
         entry = Entry(file, step=_step(answers))
         try:
@@ -120,10 +123,12 @@ def draft_campaign(
         except InputError as error:
             left_out.append((file, str(error)))
             continue
+        headers += [h for source in (*book.parts, book.whole) if source for h in source.headers]
         parts, lacking = _tables(book, answers, stepped=entry.step is not None)
         found += [(_named(entry, book, source), source, guess) for source, guess in parts]
         if not parts:
             left_out.append((file, lacking))
+    _check_named(answers.columns, headers)
     guesses = settled([guess for _, _, guess in found], answers.units)
     units = common_units(guesses)
     columns = _columns([(source, guess) for _, source, guess in found])
@@ -157,7 +162,7 @@ def draft_campaign(
         {quantity: unit for quantity, unit in units.items() if quantity in kept},
         _held_out(records),
         tuple(left_out),
-        doubts(read, answers.units),
+        doubts(read),
         device,
     )
 
@@ -255,6 +260,29 @@ def _guessed(source: Source, answers: Answers) -> TableGuess:
     timed = source.step is not None
     lacks = tuple(q for q in missing if not (q == "time" and timed))
     return TableGuess(columns, lacks)
+
+
+def _check_named(named: Mapping[str, str], headers: Sequence[str]) -> None:
+    """Refuse a header that the user named and no file has."""
+    there = list(dict.fromkeys(headers))
+    source = Source("", tuple(there), lambda _: [])
+    for quantity, header in named.items():
+        if there and not _has(source, quantity, header):
+            known = {split_header(h)[0].lower(): h for h in there}
+            near = nearest(split_header(header)[0].lower(), known)
+            raise InputError(
+                f"column of {quantity}",
+                expected="one that some file has: " + ", ".join(there[:_MOST_TOLD]),
+                found=shown(header) + near,
+                where="--column",
+            )
+
+
+def _has(source: Source, quantity: str, header: str) -> bool:
+    try:
+        return find_column(source, quantity, header) is not None
+    except InputError:  # several files have it, each in its own case
+        return True
 
 
 def _unit_of(guess: Guess | None, quantity: str) -> str:

@@ -42,6 +42,22 @@ class Guess:
     """Headers that are as likely."""
     unit_named: bool = False
     """Whether its header ends in the unit, as ``disp_mm``: no statement, but no guess at values."""
+    unit_told: bool = False
+    """Whether the user says the unit."""
+
+    @property
+    def unit_by(self) -> str:
+        """Return in words what the unit was taken by, "" where the file states it."""
+        if self.unit_told:
+            return "you said so"
+        if self.unit_stated:
+            return ""
+        return "by its name" if self.unit_named else "guessed"
+
+    @property
+    def unit_guessed(self) -> bool:
+        """Return whether nobody states the unit, nor the header's end."""
+        return not (self.unit_told or self.unit_stated or self.unit_named)
 
 
 @dataclass(frozen=True)
@@ -239,7 +255,7 @@ def listed(table: TableGuess) -> Iterator[str]:
     ["force is column 'F' (likely: the letter is usual), in N (guessed)"]
     """
     for guess in table.columns.values():
-        stated = "" if guess.unit_stated else " (by its name)" if guess.unit_named else " (guessed)"
+        stated = guess.unit_by and f" ({guess.unit_by})"
         yield (
             f"{guess.quantity} is column {guess.header!r} ({guess.sure}: {guess.why}), in"
             f" {guess.unit}{stated}"

@@ -68,6 +68,20 @@ def read_column_names(value: object) -> dict[str, str]:
     return dict(table)
 
 
+def read_guessed_units(value: object) -> tuple[object, tuple[str, ...]]:
+    """Return ``[units]`` without its list of those that are guessed, and that list."""
+    if not isinstance(value, Mapping) or "guessed" not in value:
+        return value, ()
+    given = value["guessed"]
+    units = {key: unit for key, unit in value.items() if key != "guessed"}
+    if not isinstance(given, list) or not all(isinstance(q, str) and q in units for q in given):
+        raise InputError(
+            "guessed", expected="a list of quantities in [units], as [\"force\"]",
+            found=shown(given), where=f"{_FILE} [units]",
+        )  # fmt: skip
+    return units, tuple(given)
+
+
 def read_column_units(value: object) -> dict[str, str]:
     """Return ``[units]``: checked units by quantity."""
     return _units(value, "[units]")

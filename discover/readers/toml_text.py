@@ -16,6 +16,7 @@ def campaign_text(
     device: str,
     columns: Mapping[str, str],
     units: Mapping[str, str],
+    guessed: Sequence[str],
     tests: Sequence[tuple[Entry, TableGuess]],
 ) -> str:
     """Return a ``campaign.toml``.
@@ -26,6 +27,8 @@ def campaign_text(
         Of the campaign; a preset, "" for none.
     columns, units : mapping
         ``[columns]`` and ``[units]``.
+    guessed : sequence of str
+        Those of ``[units]`` that nobody stated.
     tests : sequence of (Entry, TableGuess)
         Its records, and what their columns are taken for.
     """
@@ -40,8 +43,13 @@ def campaign_text(
         lines.append("")
     if units:
         lines.append("[units]")
-        why = "by the header's end, or by the values"
-        lines += [f"{q} = {quoted(u)}  # {why}" for q, u in units.items()]
+        for quantity, unit in units.items():
+            by = [g.columns[quantity].unit_by for _, g in tests if quantity in g.columns]
+            why = "guessed" if quantity in guessed else next(filter(None, by), "")
+            lines.append(f"{quantity} = {quoted(unit)}" + (f"  # {why}" if why else ""))
+        if guessed:
+            listed = ", ".join(quoted(quantity) for quantity in guessed)
+            lines.append(f"guessed = [{listed}]  # no file states them: take out what you know")
         lines.append("")
     for entry, _ in tests:
         lines += [*_entry_lines(entry), ""]

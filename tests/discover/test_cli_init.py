@@ -14,6 +14,7 @@ import pytest
 
 from discover.cli import main
 from discover.readers import read_campaign
+from models.checks import InputError
 from tests.discover.readers import instruments
 
 REAL = Path(__file__).parents[3] / "shared" / "real-data"
@@ -138,6 +139,17 @@ def test_what_no_file_states_is_told_and_can_be_answered(
     assert "Unsure: the unit of displacement, mm (no file states it; taken by the size" in out
     assert "Unsure: the unit of force, N" in out
     assert "--replace --unit force=kN" in out
+    (warning,) = (f.text for f in read_campaign(here).findings if "guessed" in f.text)
+    assert "no file states the unit of time and displacement and force" in warning
+    assert main(["check", ".", "-o", "checked"]) == 0
+    assert "guessed s for time, mm for displacement, N for force" in capsys.readouterr().out
+    toml = (here / "campaign.toml").read_text()
+    (here / "campaign.toml").write_text(re.sub("guessed = .*", 'guessed = ["force"]', toml))
+    (warning,) = (f.text for f in read_campaign(here).findings if "guessed" in f.text)
+    assert "no file states the unit of force: `inerter init` guessed N for force by" in warning
+    (here / "campaign.toml").write_text(re.sub("guessed = .*", 'guessed = ["mass"]', toml))
+    with pytest.raises(InputError, match="guessed must be a list of quantities in .units., as"):
+        read_campaign(here)
     assert main(["init", "."]) == 2
     assert "campaign.toml must be new (--replace writes over it)" in capsys.readouterr().err
     units = ["--unit", "force=kN", "--unit", "displacement=mm", "--unit", "time=s"]
@@ -146,6 +158,30 @@ def test_what_no_file_states_is_told_and_can_be_answered(
     found = read_campaign(here)
     np.testing.assert_allclose(found.records[0].force, _test(2.0)[1], rtol=1e-6, atol=1e-5)
     assert found.device is not None
+    assert found.findings == ()
+
+
+def test_the_user_s_unit_may_turn_the_sign_of_the_file_s_and_no_more(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _csv(here / "a.csv", "Time [s];Stroke [mm];Load [kN]", 2.0)
+    assert main(["init", ".", "--unit", "force=-1 kN"]) == 0
+    assert "in -1 kN (you said so)" in capsys.readouterr().out
+    found = read_campaign(here)
+    np.testing.assert_allclose(found.records[0].force, -_test(2.0)[1], rtol=1e-6, atol=1e-5)
+    for option, message in (
+        (["--unit", "force=N"], "--unit: unit of force must be the one that the files state, kN, or"
+         " that with its sign turned, as '-1 kN', got N"),
+        (["--unit", "velocity=mm/s"], "velocity must be a column that some file has, as"
+         " displacement, force, time, got none"),
+        (["--column", "force=Lode"], "column of force must be one that some file has: Time [s],"
+         " Stroke [mm], Load [kN], got 'Lode' (did you mean 'load'?)"),
+        (["--column", "force=Nope"], "Load [kN], got 'Nope'"),
+    ):  # fmt: skip
+        assert main(["init", ".", "--replace", *option]) == 2
+        err = capsys.readouterr().err
+        assert message in err
+        assert err.count("\n") == 1
 
 
 def test_a_channel_that_is_another_in_one_file_is_told(
@@ -277,8 +313,6 @@ def test_check_takes_one_file(here: Path, capsys: pytest.CaptureFixture[str]) ->
 def test_an_error_comes_with_what_reading_warned_of(
     here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from models.checks import InputError
-
     def refuse(*_: object, **__: object) -> None:
         raise InputError("displacement", expected="motion", found="noise", where="a.csv")
 
