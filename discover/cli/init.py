@@ -101,11 +101,13 @@ def init(
     _write(target, draft.toml())
     written = read_campaign(folder)
     document = draft_document(draft, content_hash=written.content_hash, written=str(target))
-    lines = draft_lines(draft, written=str(target), campaign=shlex.quote(str(folder)))
+    invocation: Invocation = context.obj
+    command = invocation.replacing()
+    lines = draft_lines(
+        draft, written=str(target), campaign=shlex.quote(str(folder)), command=command
+    )
     with working("Drawing"):
         figures = draft_figures(draft)
-        invocation: Invocation = context.obj
-        command = invocation.replacing()
         page = draft_report(draft, document, figures, lines=lines, command=command)
     deliver(
         document,

@@ -12,6 +12,8 @@ from discover.readers.names import NAMED
 from discover.readers.source import Source
 from models.checks import InputError, printable
 
+_MOST = 9  # headers to choose from
+
 
 @dataclass(frozen=True)
 class Doubt:
@@ -38,24 +40,32 @@ def doubts(tables: Sequence[tuple[Source, TableGuess]]) -> tuple[Doubt, ...]:
         The records' tables, and what their columns are taken for.
     """
     found: dict[tuple[str, str], Doubt] = {}
-    for _, table in tables:
+    for source, table in tables:
         for quantity, guess in table.columns.items():
-            for doubt in _of_guess(guess):
+            for doubt in _of_guess(guess, _besides(source, table, guess)):
                 found.setdefault((quantity, doubt.key), doubt)
     for doubt in _of_changes(tables):
         found.setdefault((doubt.quantity, doubt.key), doubt)
     return tuple(found.values())
 
 
-def _of_guess(guess: Guess) -> Iterator[Doubt]:
+def _besides(source: Source, table: TableGuess, guess: Guess) -> tuple[str, ...]:
+    """Return the headers that a guess by what is left may be instead."""
+    if guess.others:
+        return guess.others
+    time = table.columns["time"].header if "time" in table.columns else ""
+    return tuple(h for h in source.headers if h and h not in (guess.header, time))[:_MOST]
+
+
+def _of_guess(guess: Guess, others: Sequence[str]) -> Iterator[Doubt]:
     if guess.sure == UNSURE:
-        choices = (guess.header, *guess.others)
+        choices = (guess.header, *others)
         yield Doubt(guess.quantity, "columns", guess.header, choices, guess.why)
     if guess.unit_guessed:
         kinds = {"time": ("s", "ms"), "displacement": ("m", "mm"), "force": ("N", "kN")}
-        others = (u for u in kinds.get(guess.quantity, ()) if u != guess.unit)
+        usual = (u for u in kinds.get(guess.quantity, ()) if u != guess.unit)
         why = "no file states it; taken by the size of the values"
-        yield Doubt(guess.quantity, "units", guess.unit, (guess.unit, *others), why)
+        yield Doubt(guess.quantity, "units", guess.unit, (guess.unit, *usual), why)
 
 
 def _of_changes(tables: Sequence[tuple[Source, TableGuess]]) -> Iterator[Doubt]:

@@ -15,7 +15,7 @@ from discover.readers.draft_units import common_units, guessed_units, own_units,
 from discover.readers.entries import Entry
 from discover.readers.fastest_motion import fastest_motion
 from discover.readers.formats import OPENERS, open_file
-from discover.readers.guess import Guess, TableGuess, guess_table
+from discover.readers.guess import Guess, TableGuess, guess_table, stated_unit
 from discover.readers.long_record import first_part, read_record_of_any_length
 from discover.readers.source import Book, Source
 from discover.readers.toml_text import campaign_text
@@ -25,6 +25,7 @@ from discover.sine_fit import sine_steps
 from models.checks import InputError, nearest, printable, shown
 
 _QUARTER = 4  # records, of which one is held out
+_VOLTS = ("V", "mV", "volt", "volts", "Volt", "Volts")
 _MOST_TOLD = 30  # headers
 _NO_TIME = "no column for time among"
 
@@ -87,6 +88,7 @@ class Draft:
             units=self.units,
             guessed=guessed_units([r.guess for r in self.records], self.units) if marked else (),
             tests=[(record.entry, record.guess) for record in self.records],
+            left_out=self.left_out,
         )
 
 
@@ -121,7 +123,7 @@ def draft_campaign(
         try:
             book = open_file(folder / file, file, where=file)
         except InputError as error:
-            left_out.append((file, str(error)))
+            left_out.append((file, _without(file, error)))
             continue
         headers += [h for source in (*book.parts, book.whole) if source for h in source.headers]
         parts, lacking = _tables(book, answers, stepped=entry.step is not None)
@@ -141,20 +143,13 @@ def draft_campaign(
         try:
             whole = reading.of(entry)
         except InputError as error:
-            left_out.append((entry.label(str(entry.part or "")), str(error)))
+            label = entry.label(str(entry.part or ""))
+            left_out.append((label, _without(label, error)))
             continue
         records += reading.steps(whole) or [whole]
         read.append((source, guess))
     if not records:
-        file, why = left_out[0] if left_out else ("", "no file that can be read")
-        more = f" (and {len(left_out) - 1} more files)" if len(left_out) > 1 else ""
-        kind = TimeMissing if _NO_TIME in why else InputError
-        raise kind(
-            "files",
-            expected="at least one with time (or a sampling rate), displacement and force",
-            found=(f"{file}: " if file and not why.startswith(file) else "") + why + more,
-            where=str(folder),
-        )
+        raise _no_record(str(folder), left_out)
     kept = {quantity for record in records for quantity in record.guess.columns}
     return Draft(
         title,
@@ -165,6 +160,44 @@ def draft_campaign(
         doubts(read),
         device,
     )
+
+
+def _no_record(folder: str, left_out: Sequence[tuple[str, str]]) -> InputError:
+    """Return the error of files of which none is a record: why the first one is not."""
+    if not left_out:
+        kinds = ", ".join(OPENERS)
+        return InputError(
+            "files", expected=f"there that can be read ({kinds})", found="none", where=folder
+        )
+    file, why = left_out[0]
+    more = f" (and {len(left_out) - 1} more files)" if len(left_out) > 1 else ""
+    timeless = _NO_TIME in why
+    return (TimeMissing if timeless else InputError)(
+        "one file at least",
+        expected="a record of time, displacement and force",
+        found=f"{file}: {why}" + more,
+        where=folder,
+    )
+
+
+def _lacking(source: Source, lacks: Sequence[str]) -> str:
+    """Return what a table lacks and what to do about it."""
+    names = printable(", ".join(source.headers[:12]))
+    text = f"no column for {' and '.join(lacks)} among {names}"
+    if tuple(lacks) == ("time",):
+        return text + "; --sampling-rate '1 kHz' makes the times, or --column time=HEADER names it"
+    volts = [h for i, h in enumerate(source.headers) if stated_unit(source, i) in _VOLTS]
+    if volts:
+        return text + (
+            f"; {printable(volts[0])} is in volts: write its header without the unit, and give the"
+            " calibration as the unit of one volt, as --unit displacement='5 mm'"
+        )
+    if tuple(lacks) == ("displacement",):
+        return text + (
+            "; --column displacement=HEADER names it; velocity or acceleration alone will not do:"
+            " integrate it in the file"
+        )
+    return text + f"; --column {lacks[0]}=HEADER names it"
 
 
 @dataclass(frozen=True)
@@ -216,6 +249,12 @@ def record_files(folder: Path) -> list[str]:
     return found
 
 
+def _without(file: str, error: InputError) -> str:
+    """Return an error's text without the file that it begins with."""
+    text = str(error)
+    return text.removeprefix(file).lstrip(" :") if text.startswith(file) else text
+
+
 def _step(answers: Answers) -> float | None:
     return None if answers.sampling_rate is None else 1.0 / answers.sampling_rate
 
@@ -234,8 +273,7 @@ def _tables(
             if not lacks:
                 able.append((source, guess))
             elif not first:
-                names = ", ".join(source.headers[:12])
-                first = f"no column for {' and '.join(lacks)} among {printable(names)}"
+                first = _lacking(source, lacks)
         if able:
             return able, ""
     return [], first
@@ -245,13 +283,15 @@ def _guessed(source: Source, answers: Answers) -> TableGuess:
     """Return a table's guess with the columns that the user named."""
     guess = guess_table(first_part(source))
     columns = dict(guess.columns)
+    if answers.sampling_rate is not None:
+        columns.pop("time", None)  # the rate is asked for in its place
     for quantity, header in answers.columns.items():
         index = find_column(source, quantity, header)
         if index is None:
             continue
         named = source.headers[index]
         columns = {q: g for q, g in columns.items() if g.header != named or q == quantity}
-        stated = split_header(named)[1] or source.units.get(index) or ""
+        stated = stated_unit(source, index) or ""
         unit = (
             stated or answers.units.get(quantity, "") or _unit_of(columns.get(quantity), quantity)
         )

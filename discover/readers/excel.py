@@ -12,7 +12,7 @@ import numpy as np
 
 from discover.readers.content import check_unpacked, content_error, optional_package
 from discover.readers.layout import Layout, Rows, find_tables
-from discover.readers.numerals import value
+from discover.readers.numerals import clock_seconds, value
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import Book, Source
 from models.checks import Array, InputError, shown
@@ -128,9 +128,14 @@ def _source(cells: np.ndarray[Any, Any], layout: Layout, name: str, part: str) -
         ]  # fmt: skip
 
     return Source(
-        name, layout.headers, read, place, part, units=layout.units,
+        name, layout.headers, read, place, part,
+        units={**layout.units, **{i: "s" for i, cell in enumerate(span[0]) if _is_clock(cell)}},
         step=stated_step(layout.notes),
     )  # fmt: skip
+
+
+def _is_clock(cell: Any) -> bool:
+    return not isinstance(cell, int | float) and clock_seconds(_text(cell)) is not None
 
 
 def _number(cell: Any, header: str, name: str, place: str) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.readers.columns import QUANTITIES, split_header
-from discover.readers.names import CANONICAL, LETTER, name_score
+from discover.readers.names import CANONICAL, LETTER, WORD, name_score
 from discover.readers.source import Source
 from discover.readers.units import is_unit, measures, to_si
 from models.checks import Array, InputError
@@ -104,7 +104,8 @@ def guess_table(source: Source) -> TableGuess:
     return TableGuess(ordered, lacks)
 
 
-def _stated_unit(source: Source, index: int) -> str | None:
+def stated_unit(source: Source, index: int) -> str | None:
+    """Return the unit that a file states for a column, None where it states none."""
     return split_header(source.headers[index])[1] or source.units.get(index)
 
 
@@ -112,7 +113,7 @@ def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
     """Return the likeliest column by name and unit, or None where none speaks for itself."""
     scores: dict[int, tuple[float, float, bool]] = {}
     for index, header in enumerate(source.headers):
-        unit = _stated_unit(source, index)
+        unit = stated_unit(source, index)
         fitting = unit is not None and measures(unit, QUANTITIES[quantity])
         if index in taken or (unit is not None and is_unit(unit) and not fitting):
             continue
@@ -121,9 +122,13 @@ def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
             name = CANONICAL
         if name > 0.0 or (fitting and quantity in _NEEDED):
             scores[index] = (name + fitting, name, fitting)
-    for index in sorted(scores, key=lambda i: -scores[i][0]):
-        if quantity == "time" and not _is_rising(source, index):
-            continue
+    ordered = sorted(scores, key=lambda i: -scores[i][0])
+    if quantity == "time":
+        rising = [i for i in ordered if _is_rising(source, i)]
+        # One that fails is still the time: reading it tells its line and what is wrong there.
+        named = [i for i in ordered if source.step is None and scores[i][0] >= WORD]
+        ordered = rising or named
+    for index in ordered:
         score, name, fitting = scores[index]
         near = [i for i in scores if i != index and score - scores[i][0] < _NEAR]
         if quantity == "time":
@@ -146,7 +151,7 @@ def _guess(
     if others:
         sure = UNSURE
         reasons.append("others are as likely")
-    unit = _stated_unit(source, index)
+    unit = stated_unit(source, index)
     stated = unit is not None and measures(unit, QUANTITIES[quantity])
     named = None if stated else _named_unit(header, quantity)
     return Guess(
@@ -204,10 +209,11 @@ def _by_elimination(source: Source, found: Mapping[str, Guess]) -> Mapping[str, 
         i: column
         for i, header in enumerate(source.headers)
         if header not in used
-        and _stated_unit(source, i) is None
+        and stated_unit(source, i) is None
         and not any(name_score(split_header(header)[0], q) for q in _GUESSED)
         and (column := _values(source, i)) is not None
         and np.ptp(column) > 0.0
+        and not (np.diff(column) == 1.0).all()  # a counter of samples
     }
     result: dict[str, Guess] = {}
     if "time" not in found and source.step is None:

@@ -5,6 +5,10 @@ from __future__ import annotations
 import datetime
 import re
 
+import numpy as np
+
+from models.checks import Array
+
 EMPTY = ("", "nan", "na", "n/a", "null", "none", "-", "#n/a")
 """Fields that hold nothing, in lower case."""
 
@@ -13,8 +17,10 @@ _GROUPED = re.compile(
 )  # with thousands separators
 _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d?)-(\d\d?)[ T]|(\d\d?)[./](\d\d?)[./](\d{4}) )?"
-    r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9})?)Z?"
+    r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9})?)(?:Z|\s?([AaPp])\.?[Mm]\.?)?"
 )
+DAY = 86400.0
+"""s."""
 _FIRST_DAY = datetime.date(2000, 1, 1).toordinal()  # from which days are counted
 
 
@@ -63,11 +69,15 @@ def clock_seconds(text: str) -> float | None:
     --------
     >>> clock_seconds("2000-01-02 00:00:00.25"), clock_seconds("2.1.2000 00:00:01")
     (86400.25, 86401.0)
+    >>> clock_seconds("12:00:01 AM"), clock_seconds("1:00:00.5 pm")
+    (1.0, 46800.5)
     """
     match = _CLOCK.fullmatch(text)
     if match is None:
         return None
-    year, month, day, own_day, own_month, own_year, hours, minutes, seconds = match.groups()
+    year, month, day, own_day, own_month, own_year, hours, minutes, seconds, half = (
+        match.groups()
+    )
     days = 0
     try:
         if year:
@@ -78,5 +88,18 @@ def clock_seconds(text: str) -> float | None:
             days = date.toordinal() - _FIRST_DAY
     except ValueError:  # a 13th month
         return None
-    rest = 3600 * int(hours) + 60 * int(minutes) + float(seconds.replace(",", "."))
+    hour = int(hours) if half is None else int(hours) % 12 + 12 * (half in "Pp")
+    rest = 3600 * hour + 60 * int(minutes) + float(seconds.replace(",", "."))
     return 86400 * days + rest
+
+
+def past_midnight(times: Array) -> Array:
+    """Return times of day that go on where the clock passes midnight, s.
+
+    Examples
+    --------
+    >>> past_midnight(np.array([86399.0, 86399.5, 0.0, 0.5])).tolist()
+    [86399.0, 86399.5, 86400.0, 86400.5]
+    """
+    days = np.cumsum(np.diff(times, prepend=times[:1]) < -0.5 * DAY)
+    return np.asarray(times + DAY * days, dtype=np.float64)

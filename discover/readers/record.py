@@ -125,7 +125,7 @@ def _header_findings(columns: Columns, file: str) -> list[Finding]:
     ]
     findings += [Finding("note", text, file) for text in columns.notes]
     if columns.step is not None:
-        text = f"it has no time column: the times are made of its {1.0 / columns.step:.6g} Hz"
+        text = "no time column is read: the times are made of the sampling rate"
         findings.append(Finding("note", text, file))
     if columns.assumed:
         findings.append(Finding("warning", assumed_units(columns.assumed), file))

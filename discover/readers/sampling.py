@@ -10,7 +10,7 @@ from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d
 
 from discover.readers.fastest_motion import fastest_motion
 from discover.records import EVEN, GAP, on_grid
-from models.checks import Array, InputError, number
+from models.checks import Array, Indices, InputError, number
 
 FEWEST_SAMPLES = 16
 """A record of fewer samples is an error."""
@@ -230,9 +230,23 @@ def _check_increasing(time: Array, where: str, place: Callable[[int], str]) -> N
         raise InputError(
             "time",
             expected="strictly increasing",
-            found=f"{time[row]:.9g} s after {time[row - 1]:.9g} s: it {kind}{more}",
+            found=f"{time[row]:.9g} s after {time[row - 1]:.9g} s: it {kind}{more}; "
+            + _remedy(time, bad),
             where=f"{where} {place(row)}",
         )
+
+
+def _remedy(time: Array, bad: Indices) -> str:
+    """Return what to do about time that does not increase."""
+    steps = np.diff(time)
+    if (steps[bad] == 0.0).all() and 2 * bad.size > steps.size:
+        return (
+            "many samples share one time, which is too coarse: give `sampling_rate` in [[records]],"
+            " or --sampling-rate to `inerter init`"
+        )
+    if bad.size < steps.size and (time[bad + 1] <= time[0]).all():
+        return "it begins again, as of several tests in one table: put each in a file of its own"
+    return "mend the file, or take the part before or after by `range` in [[records]]"
 
 
 def _check_gaps(

@@ -23,7 +23,14 @@ from discover.readers.notation import (
     notations,
     thousands_note,
 )
-from discover.readers.numerals import EMPTY, is_number, value
+from discover.readers.numerals import (
+    DAY,
+    EMPTY,
+    clock_seconds,
+    is_number,
+    past_midnight,
+    value,
+)
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import Book, Source
 from models.checks import Array, InputError, shown
@@ -252,7 +259,9 @@ def _source(text: Text, rows: Rows, layout: Layout, name: str, part: str) -> Sou
         return f"sample {row + 1}"
 
     return Source(
-        name, headers, read, place, part, units=layout.units, step=stated_step(layout.notes),
+        name, headers, read, place, part,
+        units={**layout.units, **dict.fromkeys(_clocks(text, layout), "s")},
+        step=stated_step(layout.notes),
         notes={i: thousands_note(headers[i], n) for i, n in written.items()
                if n.thousands and i < width},
     )  # fmt: skip
@@ -345,7 +354,17 @@ def _read_slow(
                     found=shown(fields[index]), where=where,
                 )  # fmt: skip
             column.append(found)
-    return [np.array(column) for column in columns]
+    clocks = _clocks(text, layout)
+    return [
+        past_midnight(np.array(column)) if clocks.get(index, DAY) < DAY else np.array(column)
+        for index, column in zip(written, columns, strict=True)
+    ]
+
+
+def _clocks(text: Text, layout: Layout) -> dict[int, float]:
+    """Return the first time of each column that is a clock's, s."""
+    found = ((i, clock_seconds(f)) for i, f in enumerate(text.fields(layout.first)))
+    return {index: time for index, time in found if time is not None}
 
 
 def _expected(field: str, notation: Notation) -> str:

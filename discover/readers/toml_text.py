@@ -18,6 +18,7 @@ def campaign_text(
     units: Mapping[str, str],
     guessed: Sequence[str],
     tests: Sequence[tuple[Entry, TableGuess]],
+    left_out: Sequence[tuple[str, str]],
 ) -> str:
     """Return a ``campaign.toml``.
 
@@ -31,6 +32,8 @@ def campaign_text(
         Those of ``[units]`` that nobody stated.
     tests : sequence of (Entry, TableGuess)
         Its records, and what their columns are taken for.
+    left_out : sequence of (str, str)
+        Files that are no record, with why.
     """
     lines = [f"title = {quoted(title)}", ""]
     if device:
@@ -53,6 +56,7 @@ def campaign_text(
         lines.append("")
     for entry, _ in tests:
         lines += [*_entry_lines(entry), ""]
+    lines += [f"# left out: {printable(file)}: {printable(why)}" for file, why in left_out]
     return "\n".join(lines).rstrip("\n") + "\n"
 
 

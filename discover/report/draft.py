@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -14,6 +15,8 @@ from discover.readers.guess import listed
 from discover.report.environment import render
 from discover.words import capitalize_first, counted, named_line
 from models.checks import printable
+
+_MOST_FILES = 6  # that are named beside one reason
 
 
 def draft_document(draft: Draft, *, content_hash: str, written: str) -> dict[str, Any]:
@@ -59,7 +62,7 @@ def draft_document(draft: Draft, *, content_hash: str, written: str) -> dict[str
     }  # fmt: skip
 
 
-def draft_lines(draft: Draft, *, written: str, campaign: str) -> list[str]:
+def draft_lines(draft: Draft, *, written: str, campaign: str, command: str) -> list[str]:
     """Return what a person should know of a drafted campaign, the next command last.
 
     Parameters
@@ -70,6 +73,8 @@ def draft_lines(draft: Draft, *, written: str, campaign: str) -> list[str]:
         Path of ``campaign.toml``.
     campaign : str
         The folder as a command takes it.
+    command : str
+        What a person types to draft it again.
     """
     held = sum(r.entry.held_out for r in draft.records)
     lines = [
@@ -77,17 +82,31 @@ def draft_lines(draft: Draft, *, written: str, campaign: str) -> list[str]:
     ]
     lines += [f"Columns: {text}" for text in _guessed(draft)]
     lines += [f"Stepped sine: {text}" for text in _stepped(draft)]
-    lines += [f"Left out: {printable(file)}: {printable(why)}" for file, why in draft.left_out]
+    lines += [f"Left out: {text}" for text in _left_out(draft)]
     for doubt in draft.doubts:
         option = "--column" if doubt.key == "columns" else "--unit"
-        other = doubt.choices[1] if len(doubt.choices) > 1 else "…"
+        other = next(iter(doubt.choices[1:]), doubt.taken)
+        answer = shlex.quote(f"{doubt.quantity}={printable(other)}")
         lines.append(
             f"Unsure: the {doubt.key.removesuffix('s')} of {doubt.quantity},"
             f" {printable(doubt.taken)} ({doubt.why}); correct it in campaign.toml, or with"
-            f" --replace {option} {doubt.quantity}={printable(other)}"
+            f" `{command} {option} {answer}`"
         )
     lines.append(f"Next: inerter check {campaign}")
     return lines
+
+
+def _left_out(draft: Draft) -> list[str]:
+    """Return the files that are no record with why, a reason once."""
+    files: dict[str, list[str]] = {}
+    for file, why in draft.left_out:
+        files.setdefault(why, []).append(printable(file))
+    return [
+        ", ".join(own[:_MOST_FILES])
+        + (f" and {len(own) - _MOST_FILES} more" if len(own) > _MOST_FILES else "")
+        + f": {printable(why)}"
+        for why, own in files.items()
+    ]
 
 
 def _stepped(draft: Draft) -> list[str]:

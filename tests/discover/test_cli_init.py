@@ -235,10 +235,106 @@ def test_files_without_time_take_a_sampling_rate(
 ) -> None:
     _csv(here / "a.csv", "displacement [mm];force [kN]", 2.0, timed=False)
     assert main(["init", "."]) == 2
-    assert "time (or a sampling rate)" in capsys.readouterr().err
+    err = capsys.readouterr().err
+    assert "a.csv: no column for time among displacement [mm], force [kN]; --sampling-rate" in err
     assert not (here / "campaign.toml").exists()
     assert main(["init", ".", "--sampling-rate", "0.4 kHz"]) == 0
     np.testing.assert_allclose(read_campaign(here).records[0].time, TIME, atol=1e-9)
+
+
+def test_a_counter_of_samples_is_no_time(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    x, force = _test(2.0)
+    table = np.column_stack([np.arange(x.size), 1e3 * x, force])
+    header = "Sample #,Disp (mm),Force (N)"
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    assert main(["init", "."]) == 2
+    assert "no column for time among Sample #, Disp (mm), Force (N)" in capsys.readouterr().err
+    assert main(["init", ".", "--sampling-rate", "400 Hz"]) == 0
+    assert "Unsure" not in capsys.readouterr().out
+    found = read_campaign(here)
+    np.testing.assert_allclose(found.records[0].time, TIME, atol=1e-9)
+    assert [f.text for f in found.findings] == [
+        "no time column is read: the times are made of the sampling rate"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("header", "time", "message"),
+    [
+        ("Time [s],Velocity [mm/s],Force [N]", TIME,
+         "no column for displacement among Time [s], Velocity [mm/s], Force [N]; --column"
+         " displacement=HEADER names it; velocity or acceleration alone will not do"),
+        ("Time [s],LVDT [V],Load [kN]", TIME,
+         "LVDT [V] is in volts: write its header without the unit, and give the calibration as the"
+         " unit of one volt, as --unit displacement='5 mm'"),
+        ("Time [s],LVDT [mm],Load [kN]", np.floor(TIME),
+         "many samples share one time, which is too coarse: give `sampling_rate`"),
+        ("Time [s],LVDT [mm],Load [kN]", TIME % 1.5,
+         "line 602: time must be strictly increasing, got 0 s after 1.4975 s: it falls (3 such"
+         " places); it begins again, as of several tests in one table"),
+    ],
+)  # fmt: skip
+def test_what_a_file_lacks_comes_with_what_to_do(
+    here: Path,
+    capsys: pytest.CaptureFixture[str],
+    header: str,
+    time: np.ndarray,
+    message: str,
+) -> None:
+    x, force = _test(2.0)
+    table = np.column_stack([time, 1e3 * x / 5.0, 1e-3 * force])
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    assert main(["init", "."]) == 2
+    err = capsys.readouterr().err
+    assert message in err
+    assert err.count("\n") == 1
+
+
+def test_a_calibration_is_a_unit(here: Path) -> None:
+    x, force = _test(2.0)
+    table = np.column_stack([TIME, 1e3 * x / 5.0, 1e-3 * force])
+    header = "Time [s],LVDT,Load [kN]"
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    assert main(["init", ".", "--unit", "displacement=5 mm"]) == 0
+    found = read_campaign(here)
+    np.testing.assert_allclose(found.records[0].displacement, x, atol=1e-9)
+    assert found.findings == ()
+
+
+def test_files_that_are_left_out_are_kept_in_mind(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("a", "b", "c"):
+        _csv(here / f"{name}.csv", "Time [s];Stroke [mm];Load [kN]", 2.0)
+    for name in ("d", "e"):
+        _csv(here / f"{name}.csv", "Stroke [mm];Load [kN]", 2.0, timed=False)
+    whole = (here / "c.csv").read_text().rstrip("\n")
+    (here / "c.csv").write_text(whole.rpartition(";")[0])
+    assert main(["init", "."]) == 0
+    out = capsys.readouterr().out
+    cut = "number of columns must be 3 as in the header, got 2"
+    assert f"Left out: c.csv: line 2401: {cut}" in out
+    assert "Left out: d.csv, e.csv: no column for time among Stroke [mm], Load [kN]" in out
+    assert f"\n# left out: c.csv: line 2401: {cut}" in (here / "campaign.toml").read_text()
+
+
+def test_the_commands_that_it_suggests_can_be_copied(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (here / "my lab").mkdir()
+    x, force = _test(2.0)
+    table = np.column_stack([TIME, 1e3 * x, 0.9e3 * x, force])
+    header = "Time [s],LVDT 1 [mm],LVDT 2 [mm],Force"
+    np.savetxt(here / "my lab" / "a.csv", table, delimiter=",", header=header, comments="")
+    assert main(["init", "my lab"]) == 0
+    commands = re.findall(r"`(inerter init .*)`", capsys.readouterr().out)
+    assert len(commands) == 2
+    assert all(main(shlex.split(command)[1:]) == 0 for command in commands)
+    (record,) = read_campaign("my lab").records
+    np.testing.assert_allclose(record.displacement, 0.9 * x, rtol=1e-9, atol=1e-12)
+    assert main(shlex.split(commands[0])[1:]) == 0
+    (record,) = read_campaign("my lab").records
+    np.testing.assert_allclose(record.force, 1e3 * force, rtol=1e-9)
 
 
 def test_on_a_terminal_it_asks_what_it_cant_know(
@@ -281,7 +377,7 @@ def test_one_bad_file_does_not_spoil_the_rest(here: Path) -> None:
     [
         (["init"], "FOLDER|FILE"),
         (["init", "nowhere"], "nowhere must be a folder or a file"),
-        (["init", "."], "at least one with time"),
+        (["init", "."], ".: files must be there that can be read (.csv, .tsv,"),
         (["init", ".", "--device", "device-13"], "--device: device must be one of device-12"),
         (["init", ".", "--unit", "force"], "--unit: value must be QUANTITY=UNIT, got 'force'"),
         (["init", ".", "--unit", "force=mm"], "--unit: force must be in a unit of force"),

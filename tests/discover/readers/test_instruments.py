@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import subprocess
 import sys
 from pathlib import Path
@@ -47,7 +48,7 @@ def test_tdms_groups_are_tests_and_channels_carry_their_units(
     found = _campaign(tmp_path, each)
     _check(found, 1.0, 0.5)
     assert [r.file for r in found.records] == ["a.tdms [run 1]", "a.tdms [run 2]"]
-    told = "it has no time column: the times are made of its 200 Hz"
+    told = "no time column is read: the times are made of the sampling rate"
     assert any(told in f.text for f in found.findings) == waveform
     second = FORCE_AND_STROKE + '[[records]]\nfile = "a.tdms"\ngroup = {}\n'
     for name in ('"run 2"', "2"):
@@ -403,6 +404,30 @@ def test_times_of_day_count_in_seconds(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text(text)
     (record,) = _campaign(tmp_path, ONE).records
     np.testing.assert_allclose(record.time - record.time[0], TIME, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("first", "form"),
+    [
+        ("2026-05-03 23:59:58", "%H:%M:%S.%f"),
+        ("2026-05-03 11:59:58", "%m/%d/%Y %I:%M:%S.%f %p"),
+        ("2026-05-03 23:59:58", "%I:%M:%S.%f %p"),
+    ],
+    ids=["past midnight", "past noon", "past midnight, twelve hours"],
+)
+def test_a_clock_that_passes_noon_or_midnight_goes_on(
+    tmp_path: Path, first: str, form: str
+) -> None:
+    begin = datetime.datetime.fromisoformat(first)
+    rows = [
+        f"{(begin + datetime.timedelta(seconds=t)).strftime(form)},{x:.9f},{f:.9f}"
+        for t, x, f in EACH
+    ]
+    text = "\n".join(["time,displacement [mm],force [kN]", *rows])
+    (tmp_path / "a.csv").write_text(text)
+    found = _campaign(tmp_path, ONE)
+    np.testing.assert_allclose(found.records[0].time - found.records[0].time[0], TIME, atol=1e-6)
+    assert found.findings == ()  # a clock's unit is known
 
 
 def test_several_tables_of_one_text(tmp_path: Path) -> None:
