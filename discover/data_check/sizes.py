@@ -23,7 +23,8 @@ def size_findings(campaign: Campaign, checks: Sequence[RecordCheck]) -> list[Fin
     A displacement is judged by its amplitude (√2 times the root mean square of a record that is
     no sine test), force by its root mean square about its mean. Since inertia alone makes it grow
     with the frequency's square, sine tests have to be odd by the force over their speed and over
-    their acceleration as well.
+    their acceleration as well. Where both are small and the motion is no sine, the device stood
+    still.
 
     Parameters
     ----------
@@ -46,6 +47,13 @@ def size_findings(campaign: Campaign, checks: Sequence[RecordCheck]) -> list[Fin
     ]
     found = []
     for index, record in enumerate(campaign.records):
+        if checks[index].frequency_hz is None and _is_still(amplitudes, forces, index):
+            text = (
+                f"the device does not move in it, {1e3 * (amplitudes[index] or 0.0):.2g} mm, and"
+                " its force is as small beside that of the others: leave it out"
+            )
+            found.append(Finding("warning", text, record.file))
+            continue
         own, other = amplitudes[index], _others(amplitudes, index)
         if own and other and _out_of_proportion(own / other):
             sizes = f"is {1e3 * own:.3g} mm", f"{1e3 * other:.3g} mm"
@@ -65,6 +73,17 @@ def _amplitude(record: Record, check: RecordCheck) -> float | None:
     if record.displacement is None:
         return None
     return math.sqrt(2.0) * _deviation(record.displacement)
+
+
+def _is_still(
+    amplitudes: Sequence[float | None], forces: Sequence[float | None], index: int
+) -> bool:
+    """Return whether both displacement and force are far smaller than those of the others."""
+    for values in (amplitudes, forces):
+        own, other = values[index], _others(values, index)
+        if own is None or (own and (not other or own / other > 1.0 / FACTOR)):
+            return False
+    return True
 
 
 def _deviation(values: np.ndarray) -> float:

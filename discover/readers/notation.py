@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 _MARKS = (".", ",")
 _OTHER = {".": ",", ",": "."}
 _MARKED = re.compile(r"[+-]?[\d.,]*\d[\d.,]*(?:[eE][+-]?\d+)?")
-_SHAPE = str.maketrans("0123456789", "1" * 10)
+_SHAPE = str.maketrans("0123456789", "1" * 10)  # fields that look alike tell the same
 _GROUPS = 3  # digits between thousands separators
 
 

@@ -18,6 +18,7 @@ from discover.readers.columns import (
 from discover.readers.consistency import derivative_agreement
 from discover.readers.entries import Entry
 from discover.readers.labels import check_labels
+from discover.readers.odd_samples import Place, odd_samples
 from discover.readers.sampling import regular, resampling_text
 from discover.readers.source import Source
 from discover.readers.units import SMALLEST
@@ -71,7 +72,7 @@ def read_record(
             names.get("displacement", "displacement"),
             instead=", or the record's frequency and amplitude given",
         )
-    columns = _within(columns, entry, file)
+    columns, place = _within(columns, entry, file, source.place)
     findings = _header_findings(columns, file)
     measured = dict(columns.values)
     time = measured.pop("time")
@@ -81,10 +82,10 @@ def read_record(
         raw_time=columns.raw_time,
         resample="displacement" in measured,
         where=file,
-        place=source.place,
+        place=place,
     )
     _check_varying(measured, file)
-    findings += _value_findings(measured, file)
+    findings += _value_findings(time, measured, place, file)
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
     values, disagreeing = _checked_by_motion(sampled.columns, step, file)
     findings += disagreeing
@@ -140,10 +141,12 @@ def _check_varying(values: Mapping[str, Array], file: str) -> None:
             raise InputError(name, expected="varying", found=found, where=file)
 
 
-def _value_findings(values: Mapping[str, Array], file: str) -> list[Finding]:
-    """Return what is odd in the values as measured: clipped channels, too few samples."""
+def _value_findings(
+    time: Array, values: Mapping[str, Array], place: Place, file: str
+) -> list[Finding]:
+    """Return what is odd in the values as measured: clipped channels, spikes, too few samples."""
     force = values["force"]
-    odd = [clipping_text(force)]
+    odd = [clipping_text(force), *odd_samples(time, force, values.get("displacement"), place)]
     if "displacement" in values:
         odd.append(clipped_motion_text(values["displacement"]))
         if force.size < _FEW:
@@ -181,11 +184,13 @@ def _checked_by_motion(
     return values, findings
 
 
-def _within(columns: Columns, entry: Entry, file: str) -> Columns:
-    """Return the columns over the span of time that the entry asks for."""
+def _within(
+    columns: Columns, entry: Entry, file: str, place: Place
+) -> tuple[Columns, Place]:
+    """Return the columns over the span of time that the entry asks for, and its rows' places."""
     first, last = entry.span
     if first is None and last is None:
-        return columns
+        return columns, place
     time = columns.values["time"]
     inside = np.ones(time.size, dtype=bool)
     if first is not None:
@@ -198,4 +203,6 @@ def _within(columns: Columns, entry: Entry, file: str) -> Columns:
             found=entry.span_text, where=file,
         )  # fmt: skip
     values = {name: column[inside] for name, column in columns.values.items()}
-    return replace(columns, values=values, raw_time=columns.raw_time[inside])
+    rows = np.flatnonzero(inside)
+    cut = replace(columns, values=values, raw_time=columns.raw_time[inside])
+    return cut, lambda row: place(int(rows[row]))

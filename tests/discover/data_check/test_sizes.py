@@ -52,6 +52,25 @@ def test_a_force_of_a_wrong_unit_is_one_warning_with_a_guess(force, guess):
     assert text.endswith(guess)
 
 
+def test_a_record_in_which_nothing_moves_is_to_be_left_out():
+    plan = campaign(WIDE)
+    rng = np.random.default_rng(1)
+    one = plan.records[1]
+    still = replace(
+        one,
+        displacement=1e-6 * rng.standard_normal(one.samples),
+        force=1e-3 * plan.records[0].force.std() * rng.standard_normal(one.samples),
+        frequency=None,
+        amplitude=None,
+    )
+    ((record, text),) = found(
+        replace(plan, records=(plan.records[0], still, *plan.records[2:]))
+    )
+    assert record == "1-10.csv"
+    assert text.startswith("the device does not move in it, ")
+    assert text.endswith("leave it out")
+
+
 @pytest.mark.parametrize("factor", [15.0, 1.0 / 15.0])
 def test_amplitudes_and_forces_may_span_what_tests_span(factor):
     assert found(scaled(campaign(WIDE), 0, length=factor, force=factor)) == []
