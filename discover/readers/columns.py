@@ -8,8 +8,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from discover.readers.names import NAMED, name_score
+from discover.readers.numerals import EMPTY, is_number
 from discover.readers.source import Source
 from discover.readers.units import (
     LARGEST,
@@ -21,7 +23,7 @@ from discover.readers.units import (
     to_si,
     turns_sign,
 )
-from models.checks import Array, InputError
+from models.checks import Array, InputError, shown
 
 QUANTITIES = {
     "time": "time",
@@ -114,6 +116,8 @@ def find_column(source: Source, quantity: str, wanted: str) -> int | None:
         found = [source.roles[quantity]]
     if len(found) > 1:
         listed = ", ".join(repr(source.headers[i]) for i in found)
+        if len({source.headers[i] for i in found}) == 1 and source.cell is not None:
+            listed += "; take the cells of one test by `range` in [[records]], as \"A1:C900\""
         raise InputError(quantity, expected="one column", found=listed, where=source.name)
     return found[0] if found else None
 
@@ -125,6 +129,7 @@ def read_columns(
     units: Mapping[str, str],
     may_lack: Iterable[str],
     step: float | None = None,
+    span: tuple[float | None, float | None] = (None, None),
 ) -> Columns:
     """Read the columns of a record and convert them to SI.
 
@@ -140,6 +145,8 @@ def read_columns(
         Quantities that this record can do without.
     step : float, optional
         s, a sampling interval to take in place of a time column.
+    span : tuple of float or None
+        s, first and last time that is wanted: beyond them a value may be missing.
 
     Raises
     ------
@@ -163,8 +170,7 @@ def read_columns(
         chosen[quantity] = _unit_of(source, index, quantity, units.get(quantity))
     raw = source.read(list(found.values()))
     values = {}
-    for (quantity, index), column in zip(found.items(), raw, strict=True):
-        _check_finite(source, index, column)
+    for quantity, column in zip(found, raw, strict=True):
         unit = chosen[quantity]
         values[quantity] = column if unit is None else to_si(column, unit, QUANTITIES[quantity])
     made = None
@@ -175,8 +181,28 @@ def read_columns(
         count = np.arange(values["force"].size, dtype=np.float64)
         raw_time = made * count + (source.start if step is None else 0.0)
         values["time"] = raw_time
+    inside = within(values["time"], span)
+    for index, column in zip(found.values(), raw, strict=True):
+        _check_finite(source, index, column, inside)
     notes = tuple(source.notes[index] for index in found.values() if index in source.notes)
     return Columns(values, raw_time, chosen, _unused(source, found), made, notes)
+
+
+def within(time: Array, span: tuple[float | None, float | None]) -> NDArray[np.bool_]:
+    """Return which times (N,) lie in a span; all of them, missing ones too, where it is open.
+
+    Examples
+    --------
+    >>> within(np.array([0.0, np.nan, 2.0]), (None, 1.0)).tolist()
+    [True, False, False]
+    """
+    first, last = span
+    inside = np.ones(time.size, dtype=bool)
+    if first is not None:
+        inside &= time >= first
+    if last is not None:
+        inside &= time <= last
+    return inside
 
 
 def _unused(source: Source, found: Mapping[str, int]) -> dict[str, str]:
@@ -230,16 +256,27 @@ def _unit_of(source: Source, index: int, quantity: str, stated: str | None) -> s
     return own
 
 
-def _check_finite(source: Source, index: int, column: Array) -> None:
-    bad = np.flatnonzero(~(np.abs(column) < LARGEST))
-    if bad.size:
-        more = f" ({bad.size} such values)" if bad.size > 1 else ""
-        raise InputError(
-            source.headers[index],
-            expected="a finite number throughout",
-            found=f"{column[bad[0]]:.6g}{more}",
-            where=f"{source.name} {source.place(int(bad[0]))}",
-        )
+def _check_finite(
+    source: Source, index: int, column: Array, inside: NDArray[np.bool_]
+) -> None:
+    """Refuse a value inside the wanted span that is no finite number, as the file has it."""
+    bad = np.flatnonzero(~(np.abs(column) < LARGEST) & inside)
+    if not bad.size:
+        return
+    row = int(bad[0])
+    more = f" ({bad.size} such values)" if bad.size > 1 else ""
+    expected, found = "a finite number throughout", f"{column[row]:.6g}"
+    if source.cell is not None and np.isnan(column[row]):
+        text = source.cell(row, index)
+        found = shown(text)
+        if text.strip().lower() not in EMPTY:
+            expected = source.expected.get(index, "a number") if is_number(text) else "a number"
+    raise InputError(
+        source.headers[index],
+        expected=expected,
+        found=f"{found}{more}; mend the file, or take the part before or after by `range`",
+        where=f"{source.name} {source.place(row)}",
+    )
 
 
 def assumed_units(assumed: Iterable[str]) -> str:

@@ -122,13 +122,12 @@ def _source(cells: np.ndarray[Any, Any], layout: Layout, name: str, part: str) -
 
     def read(indices: Sequence[int]) -> list[Array]:
         return [
-            np.array([_number(span[row, i], layout.headers[i], name, place(at))
-                      for at, row in enumerate(kept)])
-            for i in indices
-        ]  # fmt: skip
+            np.array([_number(span[row, i]) for row in kept], dtype=np.float64) for i in indices
+        ]
 
     return Source(
         name, layout.headers, read, place, part,
+        cell=lambda row, index: _text(span[kept[row], index]),
         units={**layout.units, **{i: "s" for i, cell in enumerate(span[0]) if _is_clock(cell)}},
         step=stated_step(layout.notes),
     )  # fmt: skip
@@ -138,11 +137,10 @@ def _is_clock(cell: Any) -> bool:
     return not isinstance(cell, int | float) and clock_seconds(_text(cell)) is not None
 
 
-def _number(cell: Any, header: str, name: str, place: str) -> float:
+def _number(cell: Any) -> float:
+    """Return a cell's number, NaN for what is none."""
     if isinstance(cell, int | float):
         return float(cell)
     text = _text(cell)
     found = value(text, "," if "," in text and "." not in text else ".")
-    if found is None:
-        raise InputError(header, expected="a number", found=shown(text), where=f"{name} {place}")
-    return found
+    return float("nan") if found is None else found

@@ -14,6 +14,7 @@ from discover.readers.columns import (
     assumed_units,
     missing_column,
     read_columns,
+    within,
 )
 from discover.readers.consistency import derivative_agreement
 from discover.readers.entries import Entry
@@ -64,7 +65,9 @@ def read_record(
         On anything that leaves no usable record.
     """
     file = entry.label(part)
-    columns = read_columns(source, names=names, units=units, may_lack=MAY_LACK, step=entry.step)
+    columns = read_columns(
+        source, names=names, units=units, may_lack=MAY_LACK, step=entry.step, span=entry.span
+    )
     if "displacement" not in columns.values and None in (entry.frequency, entry.amplitude):
         raise missing_column(
             source,
@@ -188,18 +191,14 @@ def _within(
     columns: Columns, entry: Entry, file: str, place: Place
 ) -> tuple[Columns, Place]:
     """Return the columns over the span of time that the entry asks for, and its rows' places."""
-    first, last = entry.span
-    if first is None and last is None:
+    if entry.span == (None, None):
         return columns, place
     time = columns.values["time"]
-    inside = np.ones(time.size, dtype=bool)
-    if first is not None:
-        inside &= time >= first
-    if last is not None:
-        inside &= time <= last
+    inside = within(time, entry.span)
     if not inside.any():
         raise InputError(
-            "range", expected=f"inside the record, {time.min():.6g} to {time.max():.6g} s",
+            "range",
+            expected=f"inside the record, {np.nanmin(time):.6g} to {np.nanmax(time):.6g} s",
             found=entry.span_text, where=file,
         )  # fmt: skip
     values = {name: column[inside] for name, column in columns.values.items()}

@@ -56,6 +56,10 @@ class Source:
     pieces: Callable[[Sequence[int]], Iterator[list[Array]]] | None = None
     """The same columns as `read`, a piece (B,) of each at a time; None where a file has to be read
     whole."""
+    cell: Callable[[int, int], str] | None = None
+    """A row's field of a column as it stands in the file; None where values are numbers anyway."""
+    expected: Mapping[int, str] = field(default_factory=dict)
+    """How a column's numbers are written, by its index, where that is not plain."""
     notes: Mapping[int, str] = field(default_factory=dict)
     """What to tell of a column where it is read, by its index among the headers."""
 
@@ -123,7 +127,7 @@ def check_lengths(
             raise InputError(
                 headers[index],
                 expected=f"of the length of {headers[indices[0]]} ({sizes[0]})",
-                found=str(size),
+                found=f"{size}; save channels of several rates at one rate",
                 where=name,
             )
 

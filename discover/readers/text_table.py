@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import csv
 import io
+import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -258,8 +259,13 @@ def _source(text: Text, rows: Rows, layout: Layout, name: str, part: str) -> Sou
                 return f"line {at + 1}"
         return f"sample {row + 1}"
 
+    def cell(row: int, index: int) -> str:
+        at = next(itertools.islice(_samples(rows, layout), row, None))
+        return text.fields(at)[index]
+
     return Source(
-        name, headers, read, place, part,
+        name, headers, read, place, part, cell=cell,
+        expected={i: _expected(n) for i, n in written.items()},
         units={**layout.units, **dict.fromkeys(_clocks(text, layout), "s")},
         step=stated_step(layout.notes),
         notes={i: thousands_note(headers[i], n) for i, n in written.items()
@@ -330,7 +336,7 @@ def _read_slow(
     written: Mapping[int, Notation],
     name: str,
 ) -> list[Array]:
-    """Return the columns line by line, or say which line and column is wrong."""
+    """Return the columns line by line, NaN for what is no number, or say which line is wrong."""
     columns: list[list[float]] = [[] for _ in written]
     least = len(headers)
     while least and not headers[least - 1]:
@@ -348,12 +354,7 @@ def _read_slow(
             )
         for column, (index, own) in zip(columns, written.items(), strict=True):
             found = value(fields[index], own.decimal, own.thousands)
-            if found is None:
-                raise InputError(
-                    headers[index], expected=_expected(fields[index], own),
-                    found=shown(fields[index]), where=where,
-                )  # fmt: skip
-            column.append(found)
+            column.append(float("nan") if found is None else found)
     clocks = _clocks(text, layout)
     return [
         past_midnight(np.array(column)) if clocks.get(index, DAY) < DAY else np.array(column)
@@ -367,10 +368,8 @@ def _clocks(text: Text, layout: Layout) -> dict[int, float]:
     return {index: time for index, time in found if time is not None}
 
 
-def _expected(field: str, notation: Notation) -> str:
-    """Return what a field should have been."""
-    if not is_number(field):
-        return "a number"
+def _expected(notation: Notation) -> str:
+    """Return how a column's numbers are written."""
     parted = f" and thousands by {notation.thousands!r}" if notation.thousands else ""
     return (
         f"a number with decimals parted by {notation.decimal!r}{parted}, as the rest shows; save"

@@ -460,6 +460,37 @@ def test_a_span_of_time_is_a_test(tmp_path: Path) -> None:
             _campaign(tmp_path, ONE + f'range = "{text}"\n')
 
 
+@pytest.mark.parametrize("cell", ["", "#N/A", "Overload", "-"])
+def test_a_range_leaves_out_cells_that_are_no_numbers(tmp_path: Path, cell: str) -> None:
+    lines = _table("time [s],displacement [mm],force [kN]", sep=",").splitlines()
+    lines[101] = lines[101].rpartition(",")[0] + f",{cell}"  # at 0.5 s
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    with pytest.raises(InputError, match=rf"line 102: force .* got '{cell}'; mend .* `range`"):
+        _campaign(tmp_path, ONE)
+    (record,) = _campaign(tmp_path, ONE + 'range = "0.6 s :"\n').records
+    np.testing.assert_allclose(record.force, 1e3 * LOAD[120:], rtol=1e-6, atol=1e-5)
+    with pytest.raises(InputError, match="line 102: "):
+        _campaign(tmp_path, ONE + 'range = "0.4 s :"\n')
+
+
+def test_tests_side_by_side_in_a_sheet_are_taken_by_their_cells(tmp_path: Path) -> None:
+    import openpyxl
+
+    book = openpyxl.Workbook()
+    header = ["time [s]", "displacement [mm]", "force [kN]"]
+    book.active.append([*header, None, *header])
+    for t, x, f in EACH:
+        book.active.append([t, x, f, None, t, 0.5 * x, 0.5 * f])
+    book.save(tmp_path / "a.xlsx")
+    one = '[[records]]\nfile = "a.xlsx"\n'
+    with pytest.raises(InputError, match=r"take the cells of one test by `range` in \[\[rec"):
+        _campaign(tmp_path, one)
+    last = len(EACH) + 1
+    cells = 'sheet = "Sheet"\nrange = "{}"\n'
+    both = one + cells.format(f"A1:C{last}") + one + cells.format(f"E1:G{last}")
+    _check(_campaign(tmp_path, both), 1.0, 0.5)
+
+
 def test_a_pattern_stands_for_every_file_that_no_table_names(tmp_path: Path) -> None:
     for name in ("b.csv", "a.csv", "c.csv"):
         (tmp_path / name).write_text(_table("time [s],displacement [mm],force [kN]", sep=","))

@@ -106,7 +106,7 @@ def test_tsv_and_txt(tmp_path: Path) -> None:
         (_with_line(7, "1,2,3,4"), "a.csv line 7: number of columns must be 3 .*, got 4"),
         (_with_line(7, "0.025,abc,3"), r"line 7: displacement \[mm\] must be a number, got 'abc'"),
         (_with_line(7, "0.025,,3"), r"line 7: displacement \[mm\] must be a finite number"),
-        (_with_line(7, "0.025,1,nan"), r"line 7: force \[kN\] must be a finite number .* got nan"),
+        (_with_line(7, "0.025,1,nan"), r"line 7: force \[kN\] must be a finite .* got 'nan'"),
         (_with_line(7, "0.025,1,-inf"), r"line 7: force \[kN\] must be a finite .* got -inf"),
         (_with_line(7, "0.025,1,1e99"), r"line 7: force \[kN\] must be a finite .* got 1e\+99"),
         ("# one\n" + _with_line(7, "0.025,x,3"), r"line 8: displacement"),
