@@ -83,14 +83,17 @@ def predicts_better(was: Assessed, now: Assessed) -> bool:
 
 
 def is_told_from_noise(assessed: Assessed) -> bool:
-    """Tell whether records left out would be predicted better, were what is left but noise."""
+    """Tell whether records left out would be predicted better, were what is left but noise.
+
+    Of errors a factor counts, so that one record which is far off does not hide the others.
+    """
     sheet = assessed.space.sheet
     records = np.array([u.record for u in sheet.units])
     errors = left_out(assessed.predicting)[1]
     if errors.size != records.max() + 1:  # parts of a lone record
         return True
     noise = np.array([_noise(sheet, np.flatnonzero(records == r)) for r in range(errors.size)])
-    return is_less(noise, errors)
+    return is_less(np.log(noise), np.log(np.maximum(errors, _NOTHING * noise)))
 
 
 def is_needed(without: Assessed, with_it: Assessed) -> bool:
