@@ -142,6 +142,7 @@ def probability(value: float | None) -> str:
 
 
 _MOST_DIGITS = 10
+_MOST_NAMES = 4  # files, of which the same is said
 
 
 def odds(nats: float) -> str:
@@ -271,6 +272,19 @@ def listed(items: Iterable[str], last: str = "and") -> str:
     if len(parts) < 2:
         return "".join(parts)
     return f"{', '.join(parts[:-1])} {last} {parts[-1]}"
+
+
+def some_of(names: Sequence[str]) -> str:
+    """Return the first names of many, and how many more there are.
+
+    Examples
+    --------
+    >>> some_of(["a.csv", "b.csv"]), some_of([f"{i}.csv" for i in range(12)])
+    ('a.csv, b.csv', '0.csv, 1.csv, 2.csv, 3.csv and 8 more')
+    """
+    most = len(names) if len(names) <= _MOST_NAMES + 1 else _MOST_NAMES
+    more = f" and {len(names) - most} more" if most < len(names) else ""
+    return ", ".join(names[:most]) + more
 
 
 def model_names(given: Sequence[str]) -> list[str]:

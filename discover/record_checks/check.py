@@ -250,9 +250,8 @@ def _quality(record: RecordCheck) -> list[Finding]:
     kind, file = record.kind, record.file
     used = kind.usable.stop - kind.usable.start
     if used < record.samples:
-        what = "start-up and run-down" if kind.kind == "sine" else "what isn't whole periods"
-        text = f"{used} of {record.samples} samples are used: {what} cut off"
-        findings.append(Finding("note", text, file))
+        what = "start-up and run-down" if kind.kind == "sine" else "samples beyond whole periods"
+        findings.append(Finding("note", f"{what} are cut off", file))
     if kind.kind == "sine" and kind.sine is not None and kind.cycles is not None:
         if kind.cycles < _FEW_CYCLES:
             text = f"only {kind.cycles:.2f} usable cycles: its noise floor is uncertain"

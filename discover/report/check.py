@@ -14,7 +14,16 @@ from discover.figure_data import PlanFigureData
 from discover.plots.plan_map import plan_map
 from discover.plots.separation_matrix import nats_text, separation_matrix
 from discover.report.environment import render
-from discover.words import counted, kind_name, listed, named_line, odds, percent, significant
+from discover.words import (
+    counted,
+    kind_name,
+    listed,
+    named_line,
+    odds,
+    percent,
+    significant,
+    some_of,
+)
 
 
 def check_lines(document: Mapping[str, Any], *, campaign: str) -> list[str]:
@@ -28,13 +37,23 @@ def check_lines(document: Mapping[str, Any], *, campaign: str) -> list[str]:
         The campaign's folder as a command takes it.
     """
     lines = [_records_line(document)]
-    for finding in document["findings"]:
-        record = f"{finding['record']}: " if finding.get("record") else ""
-        lines.append(f"{str(finding['level']).capitalize()}: {record}{finding['text']}")
+    lines += _found_lines(document["findings"])
     lines += _plan_lines(document)
     lines.append(f"Next: {next_step(document, campaign=campaign)}")
     lines.append("Check: passed." if document["passed"] else "Check: failed.")
     return lines
+
+
+def _found_lines(findings: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return what was found, once for all records of which it is said."""
+    files: dict[tuple[str, str], list[str]] = {}
+    for finding in findings:
+        own = files.setdefault((str(finding["level"]), str(finding["text"])), [])
+        own += [str(finding["record"])] if finding.get("record") else []
+    return [
+        f"{level.capitalize()}: {some_of(own) + ': ' if own else ''}{text}"
+        for (level, text), own in files.items()
+    ]
 
 
 def check_figures(document: Mapping[str, Any], data: PlanFigureData) -> dict[str, str]:

@@ -13,10 +13,8 @@ from discover.plots.record_view import record_view
 from discover.readers import Draft
 from discover.readers.guess import listed
 from discover.report.environment import render
-from discover.words import capitalize_first, counted, named_line
+from discover.words import capitalize_first, counted, named_line, some_of
 from models.checks import printable
-
-_MOST_FILES = 6  # that are named beside one reason
 
 
 def draft_document(draft: Draft, *, content_hash: str, written: str) -> dict[str, Any]:
@@ -101,12 +99,7 @@ def _left_out(draft: Draft) -> list[str]:
     files: dict[str, list[str]] = {}
     for file, why in draft.left_out:
         files.setdefault(why, []).append(printable(file))
-    return [
-        ", ".join(own[:_MOST_FILES])
-        + (f" and {len(own) - _MOST_FILES} more" if len(own) > _MOST_FILES else "")
-        + f": {printable(why)}"
-        for why, own in files.items()
-    ]
+    return [f"{some_of(own)}: {printable(why)}" for why, own in files.items()]
 
 
 def _stepped(draft: Draft) -> list[str]:
