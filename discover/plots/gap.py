@@ -22,7 +22,7 @@ from discover.plots.style import (
     scaled,
 )
 from discover.plots.svg import to_svg
-from discover.words import short_name
+from discover.words import raised, short_name
 
 _ROW = 17.0
 _NARROW = 15  # letters of a line of a round's name
@@ -160,7 +160,8 @@ def effect_shape(shape: EffectShape, *, name: str) -> str:
             axes.vlines(x, lower, upper, linewidth=1.6, **band)
         look = "-" if shape.joined else "."
         axes.plot(x, scale * shape.force, look, markersize=4.0, color=MODEL, label="the effect")
-        axes.set(xlabel=f"{shape.abscissa.capitalize()} ({x_unit})", ylabel=f"Force ({unit})")
+        along = f"{shape.abscissa.capitalize()} ({raised(x_unit)})"
+        axes.set(xlabel=along, ylabel=f"Force ({unit})")
         legend_above(figure, ncols=3)
         return to_svg(figure, name=name, title=f"Shape of {short_name(shape.effect)}")
 
