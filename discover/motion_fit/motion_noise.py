@@ -18,6 +18,7 @@ from models.checks import Array
 
 _ALIKE = 0.2  # of the logarithm of frequency, within which tests count as of one
 
+
 def with_motion_noise(observations: Sequence[Observation]) -> tuple[Observation, ...]:
     """Return observations whose sine tests know the force's error due to that of their motion.
 
