@@ -93,7 +93,7 @@ def batch(
     home = out.resolve()
     labels = [one.label for one in listed]
     items = [Item(c.path, c.given, home / c.label, stamp(c, asked), model, seed) for c in listed]
-    with executor(jobs, cluster) as where:
+    with executor(jobs, cluster, tell=_say) as where:
         out.mkdir(parents=True, exist_ok=True)
         (out / MARK).touch()
         errors = _work_off(items, labels, where)
@@ -193,10 +193,11 @@ def _progress(count: int, done: int) -> Iterator[Callable[[str], None]]:
         def tell(error: str) -> None:
             bar.advance(task)
             if error:
-                line = "inerter: " + printable(error, longest=1900)
-                if bar.disable:
-                    print(line, file=sys.stderr)
-                else:
-                    bar.console.print(line, markup=False, highlight=False)
+                _say(error)
 
         yield tell
+
+
+def _say(text: str) -> None:
+    """Print a line on stderr, above the bar where one is shown: it takes stderr over."""
+    print("inerter: " + printable(text, longest=1900), file=sys.stderr)

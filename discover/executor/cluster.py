@@ -14,6 +14,7 @@ from threadpoolctl import threadpool_limits
 
 from discover._version import __version__
 from discover.executor.interface import Lost, R, T
+from discover.executor.watch import LONGEST, SETTING, Watch, no_workers
 from models.checks import InputError
 
 _one_at_a_time = threading.Lock()
@@ -25,13 +26,19 @@ class Cluster:
 
     client: Any
     """Of `distributed`."""
-    address: str
-    """As given."""
+    watch: Watch
+    """Over its workers."""
 
     def finished(
         self, function: Callable[[T], R], items: Sequence[T]
     ) -> Iterator[tuple[int, R | Lost]]:
-        """Yield each item's place and result as they are done; see `Executor`."""
+        """Yield each item's place and result as they are done; see `Executor`.
+
+        Raises
+        ------
+        InputError
+            Where the scheduler goes, or no worker is there for too long.
+        """
         killed = []
         for place, result in self._submitted(function, items, range(len(items))):
             if isinstance(result, Lost):
@@ -46,6 +53,7 @@ class Cluster:
     ) -> Iterator[tuple[int, R | Lost]]:
         """Yield places and results as they are done; lost are all that were on dying workers."""
         from distributed import KilledWorker, as_completed
+        from distributed.scheduler import NoValidWorkerError
 
         futures = {
             self.client.submit(_one_at_a_time_here, function, items[place], pure=False): place
@@ -54,11 +62,13 @@ class Cluster:
         with self.client.as_current():
             completed = as_completed(list(futures))
         try:
-            for future in completed:
+            for future in self.watch.ready(completed):
                 place = futures[future]
                 error = future.exception() if future.status == "error" else None
                 if isinstance(error, KilledWorker):
                     yield place, Lost("its worker died each time, as where memory runs out")
+                elif isinstance(error, NoValidWorkerError):  # the scheduler has waited itself
+                    raise no_workers(self.watch.address, "none for as long as it waits")
                 elif error is not None:
                     raise error
                 elif future.status == "finished":
@@ -67,10 +77,10 @@ class Cluster:
                     completed.add(future)
                     continue
                 else:
-                    raise _scheduler_gone(self.address)
+                    raise _scheduler_gone(self.watch.address)
                 del futures[future]  # the cluster forgets it
         except (OSError, TimeoutError, asyncio.CancelledError):
-            raise _scheduler_gone(self.address) from None
+            raise _scheduler_gone(self.watch.address) from None
         finally:
             if futures and self.client.status == "running":
                 self.client.cancel(list(futures))
@@ -83,14 +93,17 @@ def _one_at_a_time_here(function: Callable[[T], R], item: T) -> R:
 
 
 @contextmanager
-def on_cluster(address: str) -> Iterator[Cluster]:
+def on_cluster(address: str, tell: Callable[[str], None]) -> Iterator[Cluster]:
     """Yield the executor of a cluster.
 
     Parameters
     ----------
     address : str
         Of its scheduler. It and a first worker are waited for as long as Dask's own setting says
-        (`distributed.comm.timeouts.connect`).
+        (`distributed.comm.timeouts.connect`). Where all workers go, others are waited for as long
+        as another says (`distributed.scheduler.no-workers-timeout`), by default `LONGEST`.
+    tell : callable
+        Is told in a line where the work waits for workers.
 
     Raises
     ------
@@ -118,7 +131,7 @@ def on_cluster(address: str) -> Iterator[Cluster]:
         raise InputError("scheduler", expected="reachable", found=reason, where=where) from None
     try:
         _check_workers(client, where, patience)
-        yield Cluster(client, address)
+        yield Cluster(client, Watch(client, address, tell, _longest()))
     finally:
         client.close()
 
@@ -137,6 +150,15 @@ def _check_workers(client: Any, where: str, patience: float) -> None:
     other = sorted(set(versions.values()) - {__version__})
     if other:
         raise InputError("workers", expected=wanted, found=f"one with {other[0]}", where=where)
+
+
+def _longest() -> float:
+    """Return how many seconds the work may be without workers."""
+    import dask
+    from dask.utils import parse_timedelta
+
+    set_to = dask.config.get(SETTING, None)
+    return LONGEST if set_to is None else float(parse_timedelta(set_to))
 
 
 def _version() -> str:

@@ -37,6 +37,15 @@ def dies(value):
     return value
 
 
+def dies_when_told(path):
+    """Take the process down as soon as the file `path` is there; "" lives."""
+    while path and not Path(path).exists():
+        time.sleep(0.01)
+    if path:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return path
+
+
 def fails(value):
     if value == 3:
         raise ValueError("three is refused")

@@ -1,4 +1,6 @@
 import logging
+import subprocess
+import sys
 import time
 
 import pytest
@@ -49,6 +51,35 @@ def test_an_item_that_kills_every_worker_is_given_up(address):
     found = done(address, tasks.dies, [1, -1, 2])
     assert isinstance(found.pop(1), Lost)
     assert found == {0: 1, 2: 2}
+
+
+@pytest.fixture
+def last_worker():
+    """The scheduler of one worker that nothing starts again."""
+    with distributed.LocalCluster(
+        n_workers=0, protocol="tcp", dashboard_address=None, silence_logs=logging.CRITICAL
+    ) as cluster:
+        address = cluster.scheduler_address
+        command = [sys.executable, "-m", "distributed.cli.dask_worker", address]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        with subprocess.Popen([*command, "--no-nanny", "--nthreads", "1"], **quiet) as worker:
+            yield address
+            worker.kill()
+
+
+def test_a_cluster_that_loses_all_workers_ends_the_work_with_what_is_done(last_worker, tmp_path):
+    told, found = [], {}
+    now = tmp_path / "now"
+    soon = dask.config.set({"distributed.scheduler.no-workers-timeout": "2s"})
+    with soon, executor(cluster=last_worker, tell=told.append) as where:
+        with pytest.raises(InputError, match="workers must be at least one .*, got none for 2 s"):
+            for place, result in where.finished(tasks.dies_when_told, ["", str(now), ""]):
+                found[place] = result
+                now.touch()
+    assert found == {0: ""}
+    (line,) = told
+    assert last_worker in line
+    assert "waiting up to 2 s" in line
 
 
 def test_leaving_early_cancels_what_is_queued(address, tmp_path):
