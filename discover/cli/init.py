@@ -25,47 +25,50 @@ _QUANTITIES = ("time", "displacement", "force", "velocity", "acceleration", "tem
 _NAME = "campaign.toml"
 
 
+Files = Annotated[
+    list[Path],
+    typer.Argument(metavar="FOLDER|FILE...", help="A folder of records, or the records."),
+]
+Title = Annotated[
+    str | None,
+    typer.Option("--title", metavar="TEXT", help="Of the campaign [default: the folder's name]."),
+]
+Column = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--column", metavar="QUANTITY=HEADER", help="A column, as force=F1; may be given again."
+    ),
+]
+Unit = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--unit",
+        metavar="QUANTITY=UNIT",
+        help="A unit that no file states, as force=kN; may be given again.",
+    ),
+]
+SamplingRate = Annotated[
+    str | None,
+    typer.Option(
+        "--sampling-rate", metavar="QUANTITY", help="Of files without a time column, as '1 kHz'."
+    ),
+]
+Preset = Annotated[
+    str | None,
+    typer.Option("--device", metavar="PRESET", help="The device: " + ", ".join(PRESETS) + "."),
+]
+Replace = Annotated[bool, typer.Option("--replace", help="Replace a campaign.toml that is there.")]
+
+
 def init(
     context: typer.Context,
-    files: Annotated[
-        list[Path],
-        typer.Argument(metavar="FOLDER|FILE...", help="A folder of records, or the records."),
-    ],
-    title: Annotated[
-        str | None,
-        typer.Option(
-            "--title", metavar="TEXT", help="Of the campaign [default: the folder's name]."
-        ),
-    ] = None,
-    column: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--column", metavar="QUANTITY=HEADER", help="A column, as force=F1; may be given again."
-        ),
-    ] = None,
-    unit: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--unit",
-            metavar="QUANTITY=UNIT",
-            help="A unit that no file states, as force=kN; may be given again.",
-        ),
-    ] = None,
-    sampling_rate: Annotated[
-        str | None,
-        typer.Option(
-            "--sampling-rate",
-            metavar="QUANTITY",
-            help="Of files without a time column, as '1 kHz'.",
-        ),
-    ] = None,
-    device: Annotated[
-        str | None,
-        typer.Option("--device", metavar="PRESET", help="The device: " + ", ".join(PRESETS) + "."),
-    ] = None,
-    replace_: Annotated[
-        bool, typer.Option("--replace", help="Replace a campaign.toml that is there.")
-    ] = False,
+    files: Files,
+    title: Title = None,
+    column: Column = None,
+    unit: Unit = None,
+    sampling_rate: SamplingRate = None,
+    device: Preset = None,
+    replace_: Replace = False,
     out: options.Out = None,
     as_json: options.AsJson = False,
 ) -> int:
@@ -109,13 +112,9 @@ def init(
     with working("Drawing"):
         figures = draft_figures(draft)
         page = draft_report(draft, document, figures, lines=lines, command=command)
+    pages = page_files(page, figures)
     deliver(
-        document,
-        name="init.json",
-        folder=results,
-        files=page_files(page, figures),
-        summary=lines,
-        as_json=as_json,
+        document, name="init.json", folder=results, files=pages, summary=lines, as_json=as_json
     )
     return 0
 

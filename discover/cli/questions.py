@@ -8,7 +8,8 @@ from dataclasses import replace
 import typer
 
 from discover.readers.doubts import Doubt
-from discover.readers.draft import Answers, Draft
+from discover.readers.draft import Draft
+from discover.readers.draft_tables import Answers
 from discover.readers.units import quantity
 from models.checks import InputError, number, printable
 from models.device import PRESETS

@@ -13,7 +13,8 @@ from typing import Any
 
 from discover.readers.choice import chosen_sources
 from discover.readers.content import content_error
-from discover.readers.draft import Answers, Draft, draft_campaign
+from discover.readers.draft import Draft, draft_campaign
+from discover.readers.draft_tables import Answers
 from discover.readers.entries import Entry, expanded
 from discover.readers.formats import IN_PIECES, OPENERS, open_book
 from discover.readers.guess import listed

@@ -153,18 +153,7 @@ def read_columns(
     InputError
         Where a column is missing, its unit is wrong, or a value is missing or not finite.
     """
-    found: dict[str, int] = {}
-    for quantity in QUANTITIES:
-        wanted = names.get(quantity, quantity)
-        index = find_column(source, quantity, wanted)
-        if quantity == "time" and step is not None:
-            continue  # asked for in place of the column
-        if index is not None:
-            found[quantity] = index
-        elif quantity == "time" and source.step is not None:
-            continue
-        elif quantity not in may_lack:
-            raise missing_column(source, quantity, wanted)
+    found = _indices(source, names, may_lack, timed=step is not None)
     chosen = {}
     for quantity, index in found.items():
         chosen[quantity] = _unit_of(source, index, quantity, units.get(quantity))
@@ -178,14 +167,33 @@ def read_columns(
         raw_time = raw[list(found).index("time")]
     else:
         made = step if step is not None else source.step or 1.0
-        count = np.arange(values["force"].size, dtype=np.float64)
-        raw_time = made * count + (source.start if step is None else 0.0)
+        start = source.start if step is None else 0.0
+        raw_time = made * np.arange(values["force"].size, dtype=np.float64) + start
         values["time"] = raw_time
     inside = within(values["time"], span)
     for index, column in zip(found.values(), raw, strict=True):
         _check_finite(source, index, column, inside)
     notes = tuple(source.notes[index] for index in found.values() if index in source.notes)
     return Columns(values, raw_time, chosen, _unused(source, found), made, notes)
+
+
+def _indices(
+    source: Source, names: Mapping[str, str], may_lack: Iterable[str], *, timed: bool
+) -> dict[str, int]:
+    """Return which column is which quantity, without the time where a rate stands for it."""
+    found = {}
+    for quantity in QUANTITIES:
+        wanted = names.get(quantity, quantity)
+        index = find_column(source, quantity, wanted)
+        if quantity == "time" and timed:
+            continue
+        if index is not None:
+            found[quantity] = index
+        elif quantity == "time" and source.step is not None:
+            continue
+        elif quantity not in may_lack:
+            raise missing_column(source, quantity, wanted)
+    return found
 
 
 def within(time: Array, span: tuple[float | None, float | None]) -> NDArray[np.bool_]:

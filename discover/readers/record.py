@@ -20,7 +20,7 @@ from discover.readers.consistency import derivative_agreement
 from discover.readers.entries import Entry
 from discover.readers.labels import check_labels
 from discover.readers.odd_samples import Place, odd_samples
-from discover.readers.sampling import regular, resampling_text
+from discover.readers.sampling import Sampled, regular, resampling_text
 from discover.readers.source import Source
 from discover.readers.units import SMALLEST
 from discover.record_kind import classify
@@ -65,17 +65,7 @@ def read_record(
         On anything that leaves no usable record.
     """
     file = entry.label(part)
-    columns = read_columns(
-        source, names=names, units=units, may_lack=MAY_LACK, step=entry.step, span=entry.span
-    )
-    if "displacement" not in columns.values and None in (entry.frequency, entry.amplitude):
-        raise missing_column(
-            source,
-            "displacement",
-            names.get("displacement", "displacement"),
-            instead=", or the record's frequency and amplitude given",
-        )
-    columns, place = _within(columns, entry, file, source.place)
+    columns, place = _asked_columns(source, entry, names, units, file)
     findings = _header_findings(columns, file)
     measured = dict(columns.values)
     time = measured.pop("time")
@@ -92,7 +82,37 @@ def read_record(
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
     values, disagreeing = _checked_by_motion(sampled.columns, step, file)
     findings += disagreeing
-    record = Record(
+    record = _record(entry, file, sampled, values)
+    if sampled.uneven:
+        resampled = classify(record).kind != "sine"
+        level, text = resampling_text(sampled, resampled=resampled)
+        findings.append(Finding(level, text, file))
+        if not resampled:
+            record = record.sampled(time, measured)
+    findings.extend(check_labels(record))
+    return record, findings, columns.units
+
+
+def _asked_columns(
+    source: Source, entry: Entry, names: Mapping[str, str], units: Mapping[str, str], file: str
+) -> tuple[Columns, Place]:
+    """Return the columns that an entry asks for over its span of time, and its rows' places."""
+    columns = read_columns(
+        source, names=names, units=units, may_lack=MAY_LACK, step=entry.step, span=entry.span
+    )
+    if "displacement" not in columns.values and None in (entry.frequency, entry.amplitude):
+        raise missing_column(
+            source,
+            "displacement",
+            names.get("displacement", "displacement"),
+            instead=", or the record's frequency and amplitude given",
+        )
+    return _within(columns, entry, file, source.place)
+
+
+def _record(entry: Entry, file: str, sampled: Sampled, values: Mapping[str, Array]) -> Record:
+    """Return the record of an entry's values on their final time."""
+    return Record(
         file=file,
         time=sampled.time,
         force=values["force"],
@@ -106,14 +126,6 @@ def read_record(
         held_out=entry.held_out,
         uniform=sampled.uniform,
     )
-    if sampled.uneven:
-        resampled = classify(record).kind != "sine"
-        level, text = resampling_text(sampled, resampled=resampled)
-        findings.append(Finding(level, text, file))
-        if not resampled:
-            record = record.sampled(time, measured)
-    findings.extend(check_labels(record))
-    return record, findings, columns.units
 
 
 def _header_findings(columns: Columns, file: str) -> list[Finding]:

@@ -5,7 +5,8 @@ import pytest
 
 from discover.motion_fit import observe_all
 from discover.readers import read_campaign
-from discover.readers.draft import Answers, draft_campaign
+from discover.readers.draft import draft_campaign
+from discover.readers.draft_tables import Answers
 from discover.record_checks import check_records
 from discover.records import Campaign, Record
 from discover.sine_fit import sine_steps

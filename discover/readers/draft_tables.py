@@ -1,0 +1,173 @@
+"""Which tables of a folder's files can be records, by what their columns are taken for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from discover.readers.columns import find_column, split_header
+from discover.readers.entries import Entry
+from discover.readers.formats import OPENERS, open_file
+from discover.readers.guess import Guess, TableGuess, guess_table, stated_unit
+from discover.readers.long_record import first_part
+from discover.readers.source import Book, Source
+from models.checks import InputError, nearest, printable, shown
+
+_VOLTS = ("V", "mV", "volt", "volts", "Volt", "Volts")
+_MOST_TOLD = 30  # headers
+NO_TIME = "no column for time among"
+"""Begins what is told of a table that lacks nothing but time."""
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What the user says in place of a guess."""
+
+    columns: Mapping[str, str]
+    """Headers by quantity."""
+    units: Mapping[str, str]
+    """Units by quantity, for columns whose unit the files do not state."""
+    sampling_rate: float | None = None
+    """Hz, of files without a time column."""
+
+
+def record_files(folder: Path) -> list[str]:
+    """Return the files below a folder that may be records, hidden ones and results left out."""
+    found = []
+    for path in sorted(folder.rglob("*")):
+        inside = path.relative_to(folder)
+        hidden = any(part.startswith(".") or part == "inerter-out" for part in inside.parts)
+        if not hidden and path.suffix.lower() in OPENERS and path.is_file():
+            found.append(inside.as_posix())
+    return found
+
+
+def found_tables(
+    folder: Path, files: Sequence[str], answers: Answers
+) -> tuple[list[tuple[Entry, Source, TableGuess]], list[tuple[str, str]]]:
+    """Return the tables of all files that can be records, and the files that hold none with why."""
+    found: list[tuple[Entry, Source, TableGuess]] = []
+    left_out: list[tuple[str, str]] = []
+    headers: list[str] = []
+    for file in files:
+        entry = Entry(file, step=_step(answers))
+        try:
+            book = open_file(folder / file, file, where=file)
+        except InputError as error:
+            left_out.append((file, without(file, error)))
+            continue
+        headers += [h for source in (*book.parts, book.whole) if source for h in source.headers]
+        parts, lacking = _tables(book, answers, stepped=entry.step is not None)
+        found += [(_named(entry, book, source), source, guess) for source, guess in parts]
+        if not parts:
+            left_out.append((file, lacking))
+    _check_named(answers.columns, headers)
+    return found, left_out
+
+
+def _step(answers: Answers) -> float | None:
+    return None if answers.sampling_rate is None else 1.0 / answers.sampling_rate
+
+
+def _tables(
+    book: Book, answers: Answers, *, stepped: bool
+) -> tuple[list[tuple[Source, TableGuess]], str]:
+    """Return the tables that can be records, or none and what the first one lacks."""
+    whole = [] if book.whole is None else [book.whole]
+    first = ""
+    for sources in (book.parts, whole):
+        able = []
+        for source in sources:
+            guess = _guessed(source, answers)
+            lacks = [q for q in guess.lacks if not (q == "time" and stepped)]
+            if not lacks:
+                able.append((source, guess))
+            elif not first:
+                first = _lacking(source, lacks)
+        if able:
+            return able, ""
+    return [], first
+
+
+def _lacking(source: Source, lacks: Sequence[str]) -> str:
+    """Return what a table lacks and what to do about it."""
+    names = printable(", ".join(source.headers[:12]))
+    text = f"no column for {' and '.join(lacks)} among {names}"
+    if tuple(lacks) == ("time",):
+        return text + "; --sampling-rate '1 kHz' makes the times, or --column time=HEADER names it"
+    volts = [h for i, h in enumerate(source.headers) if stated_unit(source, i) in _VOLTS]
+    if volts:
+        return text + (
+            f"; {printable(volts[0])} is in volts: write its header without the unit, and give the"
+            " calibration as the unit of one volt, as --unit displacement='5 mm'"
+        )
+    if tuple(lacks) == ("displacement",):
+        return text + (
+            "; --column displacement=HEADER names it; velocity or acceleration alone will not do:"
+            " integrate it in the file"
+        )
+    return text + f"; --column {lacks[0]}=HEADER names it"
+
+
+def _guessed(source: Source, answers: Answers) -> TableGuess:
+    """Return a table's guess with the columns that the user named."""
+    guess = guess_table(first_part(source))
+    columns = dict(guess.columns)
+    if answers.sampling_rate is not None:
+        columns.pop("time", None)  # the rate is asked for in its place
+    for quantity, header in answers.columns.items():
+        index = find_column(source, quantity, header)
+        if index is None:
+            continue
+        named = source.headers[index]
+        columns = {q: g for q, g in columns.items() if g.header != named or q == quantity}
+        stated = stated_unit(source, index) or ""
+        unit = (
+            stated or answers.units.get(quantity, "") or _unit_of(columns.get(quantity), quantity)
+        )
+        columns[quantity] = Guess(quantity, named, "sure", "you said so", unit, bool(stated))
+    missing = [q for q in ("time", "force", "displacement") if q not in columns]
+    timed = source.step is not None
+    lacks = tuple(q for q in missing if not (q == "time" and timed))
+    return TableGuess(columns, lacks)
+
+
+def _unit_of(guess: Guess | None, quantity: str) -> str:
+    return guess.unit if guess else {"time": "s", "force": "N"}.get(quantity, "m")
+
+
+def _check_named(named: Mapping[str, str], headers: Sequence[str]) -> None:
+    """Refuse a header that the user named and no file has."""
+    there = list(dict.fromkeys(headers))
+    source = Source("", tuple(there), lambda _: [])
+    for quantity, header in named.items():
+        if there and not _has(source, quantity, header):
+            known = {split_header(h)[0].lower(): h for h in there}
+            near = nearest(split_header(header)[0].lower(), known)
+            raise InputError(
+                f"column of {quantity}",
+                expected="one that some file has: " + ", ".join(there[:_MOST_TOLD]),
+                found=shown(header) + near,
+                where="--column",
+            )
+
+
+def _has(source: Source, quantity: str, header: str) -> bool:
+    try:
+        return find_column(source, quantity, header) is not None
+    except InputError:  # several files have it, each in its own case
+        return True
+
+
+def _named(entry: Entry, book: Book, source: Source) -> Entry:
+    """Return the entry with the part of the file, where it has several."""
+    if len(book.parts) == 1 or not source.part:
+        return entry
+    return replace(entry, key=book.key, part=source.part)
+
+
+def without(file: str, error: InputError) -> str:
+    """Return an error's text without the file that it begins with."""
+    text = str(error)
+    return text.removeprefix(file).lstrip(" :") if text.startswith(file) else text
