@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from discover.readers.names import NAMED, name_score
-from discover.readers.numerals import EMPTY, is_number
+from discover.readers.numerals import EMPTY, is_clock_form, is_number
 from discover.readers.source import Source
 from discover.readers.units import (
     LARGEST,
@@ -72,13 +72,16 @@ def split_header(header: str) -> tuple[str, str | None]:
     (('force', 'kN'), ('force', 'kN'), ('data(:,1)', None))
     >>> split_header("F / kN"), split_header("Weg/mm"), split_header("run 1/F")
     (('F', 'kN'), ('Weg', 'mm'), ('run 1/F', None))
+    >>> split_header("Time (hh:mm:ss)")
+    ('Time', 'hh:mm:ss')
     """
     text = header.strip()
     for opening, closing, barred in (("[", "]", "[]"), ("(", ")", "():,")):
         if not text.endswith(closing):
             continue
         name, bracket, unit = text[:-1].rpartition(opening)
-        if bracket and name.strip() and not any(c in unit for c in barred):
+        parted = any(c in unit for c in barred) and not is_clock_form(unit)
+        if bracket and name.strip() and not parted:
             return name.strip(), unit.strip() or None
     name, slash, unit = text.rpartition("/")  # as of DIN 461; else it is a path's
     if slash and name.strip() and unit.strip() and _over_unit(name, unit):
@@ -91,6 +94,17 @@ def _over_unit(name: str, unit: str) -> bool:
     if name[-1].isspace() and unit[0].isspace():
         return is_unit(unit)
     return any(name_score(name, q) and measures(unit.strip(), QUANTITIES[q]) for q in NAMED)
+
+
+def stated_unit(source: Source, index: int) -> str | None:
+    """Return the unit that a file states for a column, None where it states none.
+
+    What says how a clock is written, as ``hh:mm:ss``, is no unit: a clock's is known.
+    """
+    own = split_header(source.headers[index])[1]
+    if own is not None and is_clock_form(own):
+        own = None
+    return own or source.units.get(index)
 
 
 def _plain(name: str) -> str:
@@ -248,7 +262,7 @@ def _unit_of(source: Source, index: int, quantity: str, stated: str | None) -> s
     """
     kind = QUANTITIES[quantity]
     header = source.headers[index]
-    own = split_header(header)[1] or source.units.get(index)
+    own = stated_unit(source, index)
     if own is None:
         return stated
     check_unit(own, kind, name=quantity, where=f"{source.name}, header {header!r}")

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from discover.readers.columns import find_column, split_header
+from discover.readers.columns import find_column, split_header, stated_unit
 from discover.readers.entries import Entry
 from discover.readers.formats import OPENERS, open_file
-from discover.readers.guess import Guess, TableGuess, guess_table, stated_unit
+from discover.readers.guess import Guess, TableGuess, guess_table
 from discover.readers.long_record import first_part
 from discover.readers.source import Book, Source
 from models.checks import InputError, nearest, printable, shown

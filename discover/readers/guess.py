@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.readers.columns import QUANTITIES, split_header
+from discover.readers.columns import QUANTITIES, split_header, stated_unit
 from discover.readers.names import CANONICAL, LETTER, WORD, name_score
 from discover.readers.source import Source
 from discover.readers.units import is_unit, measures, to_si
@@ -102,11 +102,6 @@ def guess_table(source: Source) -> TableGuess:
     timed = source.step is not None
     lacks = tuple(q for q in _NEEDED if q not in columns and not (q == "time" and timed))
     return TableGuess(ordered, lacks)
-
-
-def stated_unit(source: Source, index: int) -> str | None:
-    """Return the unit that a file states for a column, None where it states none."""
-    return split_header(source.headers[index])[1] or source.units.get(index)
 
 
 def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:

@@ -17,8 +17,12 @@ _GROUPED = re.compile(
 )  # with thousands separators
 _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d?)-(\d\d?)[ T]|(\d\d?)[./](\d\d?)[./](\d{4}) )?"
-    r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9})?)(?:Z|\s?([AaPp])\.?[Mm]\.?)?"
+    r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9}|:\d{3})?)(?:Z|\s?([AaPp])\.?[Mm]\.?)?"
 )
+_CLOCK_FORM = re.compile(
+    r"(?:[ymd./-]+[ t])?h{1,2}:[mn]{1,2}:s{1,2}(?:[.,:]?[0fsmuz]{1,9})?(?: ?(?:tt|am/pm))?"
+)
+_DECIMAL = str.maketrans(",:", "..")  # milliseconds may follow another colon
 DAY = 86400.0
 """s."""
 _FIRST_DAY = datetime.date(2000, 1, 1).toordinal()  # from which days are counted
@@ -69,8 +73,8 @@ def clock_seconds(text: str) -> float | None:
     --------
     >>> clock_seconds("2000-01-02 00:00:00.25"), clock_seconds("2.1.2000 00:00:01")
     (86400.25, 86401.0)
-    >>> clock_seconds("12:00:01 AM"), clock_seconds("1:00:00.5 pm")
-    (1.0, 46800.5)
+    >>> clock_seconds("12:00:01 AM"), clock_seconds("1:00:00.5 pm"), clock_seconds("00:00:01:250")
+    (1.0, 46800.5, 1.25)
     """
     match = _CLOCK.fullmatch(text)
     if match is None:
@@ -89,8 +93,19 @@ def clock_seconds(text: str) -> float | None:
     except ValueError:  # a 13th month
         return None
     hour = int(hours) if half is None else int(hours) % 12 + 12 * (half in "Pp")
-    rest = 3600 * hour + 60 * int(minutes) + float(seconds.replace(",", "."))
+    rest = 3600 * hour + 60 * int(minutes) + float(seconds.translate(_DECIMAL))
     return 86400 * days + rest
+
+
+def is_clock_form(text: str) -> bool:
+    """Return whether a text says how times of day are written: no unit, but no other one's name.
+
+    Examples
+    --------
+    >>> is_clock_form("hh:mm:ss"), is_clock_form("HH:MM:SS.fff"), is_clock_form("m:s")
+    (True, True, False)
+    """
+    return _CLOCK_FORM.fullmatch(text.strip().lower()) is not None
 
 
 def past_midnight(times: Array) -> Array:

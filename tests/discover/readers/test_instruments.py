@@ -430,6 +430,22 @@ def test_a_clock_that_passes_noon_or_midnight_goes_on(
     assert found.findings == ()  # a clock's unit is known
 
 
+@pytest.mark.parametrize("header", ["Time [hh:mm:ss]", "Time (HH:MM:SS.fff)"])
+@pytest.mark.parametrize("mark", [".", ":"])
+def test_a_header_may_say_how_a_clock_is_written(tmp_path: Path, header: str, mark: str) -> None:
+    begin = datetime.datetime(2026, 5, 3, 12, 34, 56)
+    clock = [(begin + datetime.timedelta(seconds=t)).strftime("%H:%M:%S.%f")[:-3] for t in TIME]
+    rows = [
+        f"{c.replace('.', mark)},{x:.9f},{f:.9f}"
+        for c, x, f in zip(clock, STROKE, LOAD, strict=True)
+    ]
+    text = "\n".join([f"{header},Displacement [mm],Force [kN]", *rows])
+    (tmp_path / "a.csv").write_text(text)
+    found = _campaign(tmp_path, ONE)
+    np.testing.assert_allclose(found.records[0].time - found.records[0].time[0], TIME, atol=1e-6)
+    assert found.findings == ()
+
+
 def test_several_tables_of_one_text(tmp_path: Path) -> None:
     header = "time [s],displacement [mm],force [kN]"
     first = _table(f"Test A\n{header}", sep=",")
