@@ -187,8 +187,9 @@ def read_columns(
     inside = within(values["time"], span)
     for index, column in zip(found.values(), raw, strict=True):
         _check_finite(source, index, column, inside)
-    notes = tuple(source.notes[index] for index in found.values() if index in source.notes)
-    return Columns(values, raw_time, chosen, _unused(source, found), made, notes)
+    notes = [source.notes[index] for index in found.values() if index in source.notes]
+    unused = _unused(source, found)
+    return Columns(values, raw_time, chosen, unused, made, (*source.told, *notes))
 
 
 def _indices(

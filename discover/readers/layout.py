@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,8 @@ class Rows:
     """(N,) where it is marked as a comment."""
     fields: Callable[[int], list[str]]
     """A row's fields as text; of a comment without its mark."""
+    unended: bool = False
+    """Whether the last row has no end, as where writing stopped in the middle of it."""
 
     @property
     def count(self) -> int:
@@ -55,6 +57,8 @@ class Layout:
     """What stands alone above the header, "" for none."""
     notes: tuple[tuple[str, str], ...]
     """Names and values of the preamble."""
+    cut: int | None = None
+    """The row after the last sample, where it is one that was not written to its end."""
 
 
 def find_tables(rows: Rows) -> list[Layout]:
@@ -74,7 +78,27 @@ def find_tables(rows: Rows) -> list[Layout]:
         last = _end(rows, start if header is None else max(start, header + 1))
         tables.append(_layout(rows, begin, header, units, start, last))
         begin = last
+    if tables:
+        tables[-1] = _without_cut_row(rows, tables[-1])
     return tables
+
+
+def _without_cut_row(rows: Rows, table: Layout) -> Layout:
+    """Return a table without a row of samples that ends the file and is not whole as those above.
+
+    A row that is not whole anywhere else is for reading to complain of.
+    """
+    filled = np.flatnonzero(~rows.blank[table.first :])[-2:] + table.first
+    if filled.size < 2 or filled[1] >= table.last or rows.comment[filled].any():
+        return table
+    before, last = filled.tolist()
+    width = len(_trimmed(table.headers))
+    ended = len(rows.fields(last)) >= width
+    if ended and rows.unended:
+        ended = is_number(rows.fields(last)[width - 1])
+    if ended or len(_trimmed(rows.fields(before))) < width:
+        return table
+    return replace(table, last=last, cut=last)
 
 
 def _trimmed(fields: Sequence[str]) -> list[str]:

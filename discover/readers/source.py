@@ -62,6 +62,8 @@ class Source:
     """How a column's numbers are written, by its index, where that is not plain."""
     notes: Mapping[int, str] = field(default_factory=dict)
     """What to tell of a column where it is read, by its index among the headers."""
+    told: tuple[str, ...] = ()
+    """What to tell of the table."""
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,7 @@ SPACES = " "
 """Stands for any run of blanks between columns."""
 _DELIMITERS = ("\t", ";", ",", SPACES)
 _MARKS = (b"#", b"%", b"//", b"'")
+_SHOWN = 60  # characters of a line
 _TRIED = 60  # lines that show what separates columns
 _BRACKETS = re.compile(r"\[[^\[\]]*\]|\([^()]*\)|\"[^\"]*\"")
 
@@ -156,7 +157,7 @@ def _lines(data: bytes, name: str) -> tuple[Text, Rows]:
     samples = np.flatnonzero(numeric)
     delimiter = _delimiter(text, samples if samples.size > 1 else filled, numbers=samples.size > 1)
     text = Text(data, starts, delimiter)
-    return text, Rows(numeric, blank, comment, text.fields)
+    return text, Rows(numeric, blank, comment, text.fields, unended=not data.endswith(b"\n"))
 
 
 def _delimiter(text: Text, rows: np.ndarray, *, numbers: bool) -> str:
@@ -270,7 +271,19 @@ def _source(text: Text, rows: Rows, layout: Layout, name: str, part: str) -> Sou
         step=stated_step(layout.notes),
         notes={i: thousands_note(headers[i], n) for i, n in written.items()
                if n.thousands and i < width},
+        told=_cut_row(text, layout),
     )  # fmt: skip
+
+
+def _cut_row(text: Text, layout: Layout) -> tuple[str, ...]:
+    """Return what to tell of a last line that was not written to its end."""
+    if layout.cut is None:
+        return ()
+    found = text.line(layout.cut)[:_SHOWN]
+    return (
+        f"the last line, {layout.cut + 1}, is left out: {shown(found)} is no whole row, as where"
+        " the instrument was stopped; the rest is read",
+    )
 
 
 def fields_of(text: Text, layout: Layout) -> tuple[tuple[str, ...], str]:

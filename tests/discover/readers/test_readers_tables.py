@@ -127,6 +127,15 @@ def test_text_that_is_wrong_is_one_error_that_says_where(
         read_campaign(campaign(tmp_path / "c", content))
 
 
+@pytest.mark.parametrize("end", ["10.000", "10.000,", "10.000,1.5", "10.000,1.5\n", "10.0,1.5,-"])
+def test_a_last_line_that_was_not_written_to_its_end_is_left_out(tmp_path: Path, end: str) -> None:
+    found = read_campaign(campaign(tmp_path / "c", PLAIN.rstrip("\n") + "\n" + end))
+    np.testing.assert_allclose(found.records[0].time, TIME, atol=1e-9)
+    (finding,) = found.findings
+    told = f"the last line, {TIME.size + 2}, is left out: {end.strip()!r} is no whole row"
+    assert finding.text.startswith(told)
+
+
 def test_columns_and_units_tables(tmp_path: Path) -> None:
     bare = PLAIN.replace(HEADER, "t,x,F")
     names = '[columns]\ntime = "t"\ndisplacement = "x"\nforce = "F"\n'
