@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from dataclasses import replace
 
 import typer
 
@@ -31,10 +32,12 @@ def check(
 
     from discover.data_check import check_campaign
     from discover.readers import read_campaign
+    from discover.readers.left_out import left_out_findings
     from discover.report.check import check_figures, check_lines, check_report
 
     with working(f"Checking {source}"):
-        measured = read_campaign(source)
+        read = read_campaign(source)
+        measured = replace(read, findings=(*read.findings, *left_out_findings(source)))
         with after_reading(measured):
             answer = check_campaign(measured, seed=seed, jobs=jobs)
     with working("Drawing"):

@@ -308,14 +308,15 @@ def test_files_that_are_left_out_are_kept_in_mind(
         _csv(here / f"{name}.csv", "Time [s];Stroke [mm];Load [kN]", 2.0)
     for name in ("d", "e"):
         _csv(here / f"{name}.csv", "Stroke [mm];Load [kN]", 2.0, timed=False)
-    whole = (here / "c.csv").read_text().rstrip("\n")
-    (here / "c.csv").write_text(whole.rpartition(";")[0])
+    lines = (here / "c.csv").read_text().splitlines()
+    lines[1200] = lines[1200].rpartition(";")[0]
+    (here / "c.csv").write_text("\n".join(lines))
     assert main(["init", "."]) == 0
     out = capsys.readouterr().out
     cut = "number of columns must be 3 as in the header, got 2"
-    assert f"Left out: c.csv: line 2401: {cut}" in out
+    assert f"Left out: c.csv: line 1201: {cut}" in out
     assert "Left out: d.csv, e.csv: no column for time among Stroke [mm], Load [kN]" in out
-    assert f"\n# left out: c.csv: line 2401: {cut}" in (here / "campaign.toml").read_text()
+    assert f"\n# left out: c.csv: line 1201: {cut}" in (here / "campaign.toml").read_text()
 
 
 def test_the_commands_that_it_suggests_can_be_copied(
@@ -393,6 +394,25 @@ def test_bad_input_is_one_line(
     assert message in err
     assert err.count("\n") == 1
     assert list(here.iterdir()) == []
+
+
+def test_check_names_files_that_no_record_is_of(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for folder in ("lab", "lab/other rig"):
+        (here / folder).mkdir()
+        _csv(here / folder / "a.csv", "time [s];displacement [mm];force [kN]", 1.5)
+        _csv(here / folder / "b.csv", "time [s];displacement [mm];force [kN]", 3.0)
+        assert main(["init", folder, "-o", f"page of {folder.replace('/', ' ')}"]) == 0
+    toml = here / "lab" / "campaign.toml"
+    assert main(["check", "lab"]) == 0
+    assert "no [[records]]" not in capsys.readouterr().out
+    _csv(here / "lab" / "c.csv", "time [s];displacement [mm];force [kN]", 5.0)
+    (here / "lab" / "notes.pdf").write_bytes(b"no record")
+    for campaign in ("lab", str(toml)):
+        assert main(["check", campaign, "-o", "checked"]) == 0
+        out = capsys.readouterr().out
+        assert "Note: 1 file of the folder is in no [[records]]: c.csv" in out
 
 
 def test_check_takes_one_file(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
