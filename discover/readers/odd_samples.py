@@ -1,4 +1,4 @@
-"""Samples that no motion explains: single spikes, and stretches in which a channel stands still."""
+"""Samples that no motion explains: short spikes, and stretches in which a channel stands still."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from models.checks import Array
 
 _APART = 5.0  # times the largest other step, from which a sample is a spike
+_LENGTHS = (1, 2)  # samples of a spike: a converter may hold one over two
 _MOST = 5  # spikes: more are the signal's own
 _LONGEST = 8  # samples of one value in a row, from which a channel may be frozen
 _LONGER = 5  # times as long as every other such row: a coarse channel has many
@@ -20,29 +21,40 @@ Place = Callable[[int], str]
 """Names a row's place in its file."""
 
 
-def spikes(values: Array) -> list[int]:
-    """Return the samples that jump away from both neighbours, farther than any others by far.
+def spikes(values: Array) -> list[slice]:
+    """Return the samples, one or two in a row, that jump away from both of their neighbours.
 
-    An impact lasts several samples: its rise or its fall is as steep as its peak.
+    They do so farther than any others by far. An impact lasts longer: its rise or its fall is as
+    steep as its peak.
 
     Examples
     --------
     >>> x = np.sin(np.arange(2000) / 50.0)
+    >>> spikes(x)
+    []
     >>> x[333] += 5.0
-    >>> spikes(x), spikes(np.sin(np.arange(2000) / 50.0))
-    ([333], [])
+    >>> x[1200:1202] -= 5.0
+    >>> spikes(x)
+    [slice(333, 334, None), slice(1200, 1202, None)]
     """
     step = np.diff(values)
-    ahead, behind = step[1:], -step[:-1]  # away from the next, from the one before
+    candidates = [found for length in _LENGTHS for found in _excursions(step, length)]
+    candidates.sort(key=lambda found: -found[0])
+    rest = np.abs(step)
+    count = 0
+    for number, (height, at) in enumerate(candidates[:_MOST], start=1):
+        rest[at.start - 1 : at.stop] = 0.0
+        if height > _APART * rest.max():
+            count = number
+    return sorted((at for _, at in candidates[:count]), key=lambda at: at.start)
+
+
+def _excursions(step: Array, length: int) -> list[tuple[float, slice]]:
+    """Return the highest runs of so many samples that leave and come back, with their heights."""
+    ahead, behind = step[: step.size - length], -step[length:]
     height = np.where(ahead * behind > 0.0, np.minimum(np.abs(ahead), np.abs(behind)), 0.0)
     highest = np.argsort(height)[::-1][:_MOST]
-    rest = np.abs(step)
-    found: list[int] = []
-    for count, at in enumerate(highest, start=1):
-        rest[at : at + 2] = 0.0
-        if height[at] > _APART * rest.max():
-            found = sorted(int(i) + 1 for i in highest[:count])
-    return found
+    return [(float(height[at]), slice(int(at) + 1, int(at) + 1 + length)) for at in highest]
 
 
 def frozen(values: Array, other: Array) -> slice | None:
@@ -80,7 +92,7 @@ def frozen(values: Array, other: Array) -> slice | None:
 
 
 def odd_samples(time: Array, force: Array, displacement: Array | None, place: Place) -> list[str]:
-    """Return what to tell about single spikes and frozen stretches of a record's channels.
+    """Return what to tell about short spikes and frozen stretches of a record's channels.
 
     Parameters
     ----------
@@ -91,17 +103,12 @@ def odd_samples(time: Array, force: Array, displacement: Array | None, place: Pl
     place : callable
         Names a row's place in the file.
     """
-    told = []
+    told: list[str] = []
     channels = [("force", "N", force, displacement)]
     if displacement is not None:
         channels.append(("displacement", "m", displacement, force))
     for name, unit, values, other in channels:
-        for at in spikes(values):
-            told.append(
-                f"the {name} is {values[at]:.4g} {unit} for one sample, {place(at)}, between"
-                f" {values[at - 1]:.4g} and {values[at + 1]:.4g} {unit}: if that is no event of the"
-                f" device, leave {time[at]:.6g} s out by `range` in [[records]], or mend the file"
-            )
+        told += [_spike(name, unit, values, time, at, place) for at in spikes(values)]
         still = None if other is None else frozen(values, other)
         if still is not None:
             first, last = time[still.start], time[still.stop - 1]
@@ -112,3 +119,16 @@ def odd_samples(time: Array, force: Array, displacement: Array | None, place: Pl
                 " `range` in [[records]]"
             )
     return told
+
+
+def _spike(name: str, unit: str, values: Array, time: Array, at: slice, place: Place) -> str:
+    """Return what to tell of one spike of a channel."""
+    first, last = at.start, at.stop - 1
+    size = f"{values[first]:.4g}" + (f" and {values[last]:.4g}" if last > first else "")
+    many = "one sample," if last == first else f"{last - first + 1} samples from"
+    times = f"{time[first]:.6g}" + (f" to {time[last]:.6g}" if last > first else "")
+    return (
+        f"the {name} is {size} {unit} for {many} {place(first)}, between"
+        f" {values[first - 1]:.4g} and {values[last + 1]:.4g} {unit}: if that is no event of the"
+        f" device, leave {times} s out by `range` in [[records]], or mend the file"
+    )

@@ -38,6 +38,16 @@ def test_a_spike_is_told_with_line_time_value_and_what_to_do(tmp_path: Path) -> 
     ]
 
 
+def test_a_spike_of_two_samples_is_told_beside_single_ones(tmp_path: Path) -> None:
+    force = _noisy(FORCE, 1)
+    force[400], force[700:702] = 20.0, -15.0
+    single, double = _told(tmp_path, DISPLACEMENT, force)
+    assert single.startswith("the force is 2e+04 N for one sample, line 402, between ")
+    said = "the force is -1.5e+04 and -1.5e+04 N for 2 samples from line 702, between "
+    assert double.startswith(said)
+    assert "leave 3.5 to 3.505 s out by `range`" in double
+
+
 def test_a_frozen_channel_is_told(tmp_path: Path) -> None:
     displacement = DISPLACEMENT.copy()
     displacement[500:540] = displacement[500]
