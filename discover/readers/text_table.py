@@ -20,6 +20,7 @@ from discover.readers.layout import Layout, Rows, find_tables
 from discover.readers.line_kinds import line_kinds
 from discover.readers.notation import (
     Notation,
+    check_told,
     may_have_thousands,
     notations,
     thousands_note,
@@ -247,6 +248,8 @@ def _source(text: Text, rows: Rows, layout: Layout, name: str, part: str) -> Sou
 
     def read(indices: Sequence[int]) -> list[Array]:
         own = [written.get(i, Notation(decimal)) for i in indices]
+        for index, notation in zip(indices, own, strict=True):
+            check_told(notation, headers[index], name)
         plain = {n.decimal for n in own} if not any(n.thousands for n in own) else ()
         if len(plain) == 1:
             fast = _read_fast(body, width, indices, text.delimiter, *plain)

@@ -394,6 +394,34 @@ def test_marks_that_can_be_read_in_two_ways_are_refused(tmp_path: Path) -> None:
         _campaign(tmp_path, ONE)
 
 
+@pytest.mark.parametrize("mark", [",", "."])
+@pytest.mark.parametrize("delimiter", [";", "\t"])
+def test_thousands_that_nothing_tells_from_decimals_are_refused(
+    tmp_path: Path, mark: str, delimiter: str
+) -> None:
+    rows = [
+        delimiter.join((f"{1e3 * t:.0f}", f"{1e3 * x:,.0f}".replace(",", mark), f"{1e3 * f:.0f}"))
+        for t, x, f in EACH
+    ]
+    header = delimiter.join(("time [ms]", "displacement [µm]", "force [N]"))
+    (tmp_path / "a.csv").write_text("\n".join([header, *rows]), encoding="utf-8")
+    said = rf"displacement \[µm\] must be written so .* got '-?\d{mark}\d\d\d' beside '-?\d+'"
+    with pytest.raises(InputError, match=said):
+        _campaign(tmp_path, ONE)
+    fixed = [row.replace(mark, "") for row in rows]  # as the error says
+    (tmp_path / "a.csv").write_text("\n".join([header, *fixed]), encoding="utf-8")
+    np.testing.assert_allclose(_campaign(tmp_path, ONE).records[0].displacement, 1e-3 * STROKE,
+                               atol=0.51e-6)  # fmt: skip
+
+
+def test_three_decimals_everywhere_are_decimals(tmp_path: Path) -> None:
+    rows = [f"{1e3 * t:.0f};{x + 20:.3f};{f + 2:.3f}".replace(".", ",") for t, x, f in EACH]
+    (tmp_path / "a.csv").write_text("\n".join(["time [ms];displacement [mm];force [kN]", *rows]))
+    found = _campaign(tmp_path, ONE)
+    np.testing.assert_allclose(found.records[0].force, 1e3 * (LOAD + 2), atol=0.51)
+    assert found.findings == ()
+
+
 def test_times_of_day_count_in_seconds(tmp_path: Path) -> None:
     clock = [f"17.05.2024 23:59:{58 + t:06.3f}" if t < 2.0 else
              f"18.05.2024 00:00:{t - 2.0:06.3f}" for t in TIME]  # fmt: skip
