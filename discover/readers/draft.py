@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from discover.readers.columns import find_column, split_header
+from discover.readers.columns import find_column, read_columns, split_header
 from discover.readers.doubts import Doubt, doubts
 from discover.readers.draft_tables import NO_TIME, Answers, found_tables, without
 from discover.readers.draft_units import common_units, guessed_units, own_units, settled
@@ -18,7 +18,9 @@ from discover.readers.fastest_motion import fastest_motion
 from discover.readers.formats import OPENERS
 from discover.readers.guess import Guess, TableGuess
 from discover.readers.long_record import read_record_of_any_length
+from discover.readers.record import MAY_LACK
 from discover.readers.source import Source
+from discover.readers.time_text import time_text
 from discover.readers.toml_text import campaign_text
 from discover.record_kind import classify
 from discover.records import Finding, Record
@@ -188,10 +190,13 @@ class _Reading:
         record = whole.record
         if record.displacement is None or record.long is not None:
             return []
+        steps = sine_steps(record.time, record.displacement)
+        shift = self._first_time(whole.entry) - float(record.time[0]) if steps else 0.0
         found = []
-        for first, last in sine_steps(record.time, record.displacement):
-            text = f"{first:.6g} s : {last:.6g} s"
-            span = (float(f"{first:.6g}"), float(f"{last:.6g}"))
+        for ends in steps:
+            first, last = (time_text(shift + end, record.step) for end in ends)
+            text = f"{first} s : {last} s"
+            span = (float(first), float(last))
             try:
                 step = self.of(replace(whole.entry, span=span, span_text=text))
                 known = classify(step.record).kind == "sine"
@@ -201,6 +206,13 @@ class _Reading:
                 return []
             found.append(step)
         return found
+
+    def _first_time(self, entry: Entry) -> float:
+        """Return the file's first time, s, from which a clock's record counts."""
+        columns = read_columns(
+            self.source, names=self.names, units=self.units, may_lack=MAY_LACK, step=entry.step
+        )
+        return float(columns.values["time"][0])
 
 
 def _columns(tables: Sequence[tuple[Source, TableGuess]]) -> dict[str, str]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from discover.readers.time_text import time_text
 from models.checks import Array
 
 _APART = 5.0  # times the largest other step, from which a sample is a spike
@@ -104,31 +105,41 @@ def odd_samples(time: Array, force: Array, displacement: Array | None, place: Pl
         Names a row's place in the file.
     """
     told: list[str] = []
+    step = float(time[-1] - time[0]) / (time.size - 1)
     channels = [("force", "N", force, displacement)]
     if displacement is not None:
         channels.append(("displacement", "m", displacement, force))
     for name, unit, values, other in channels:
-        told += [_spike(name, unit, values, time, at, place) for at in spikes(values)]
+        for at in spikes(values):
+            first = time_text(float(time[at.start]), step)
+            last = time_text(float(time[at.stop - 1]), step)
+            times = first if first == last else f"{first} to {last}"
+            told.append(_spike(name, unit, values, at, place) + _left_out(times))
         still = None if other is None else frozen(values, other)
         if still is not None:
-            first, last = time[still.start], time[still.stop - 1]
+            first, last = (time_text(float(time[i]), step) for i in (still.start, still.stop - 1))
             told.append(
                 f"the {name} stays at {values[still.start]:.6g} {unit} for"
                 f" {still.stop - still.start} samples from {place(still.start)} on, while the rest"
-                f" moves: the channel looks frozen; leave {first:.6g} s to {last:.6g} s out by"
+                f" moves: the channel looks frozen; leave {first} s to {last} s out by"
                 " `range` in [[records]]"
             )
     return told
 
 
-def _spike(name: str, unit: str, values: Array, time: Array, at: slice, place: Place) -> str:
-    """Return what to tell of one spike of a channel."""
+def _spike(name: str, unit: str, values: Array, at: slice, place: Place) -> str:
+    """Return what one spike of a channel is, and where."""
     first, last = at.start, at.stop - 1
     size = f"{values[first]:.4g}" + (f" and {values[last]:.4g}" if last > first else "")
     many = "one sample," if last == first else f"{last - first + 1} samples from"
-    times = f"{time[first]:.6g}" + (f" to {time[last]:.6g}" if last > first else "")
     return (
         f"the {name} is {size} {unit} for {many} {place(first)}, between"
-        f" {values[first - 1]:.4g} and {values[last + 1]:.4g} {unit}: if that is no event of the"
-        f" device, leave {times} s out by `range` in [[records]], or mend the file"
+        f" {values[first - 1]:.4g} and {values[last + 1]:.4g} {unit}"
+    )
+
+
+def _left_out(times: str) -> str:
+    return (
+        f": if that is no event of the device, leave {times} s out by `range` in [[records]], or"
+        " mend the file"
     )

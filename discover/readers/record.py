@@ -22,6 +22,7 @@ from discover.readers.labels import check_labels
 from discover.readers.odd_samples import Place, odd_samples
 from discover.readers.sampling import Sampled, regular, resampling_text
 from discover.readers.source import Source
+from discover.readers.time_text import time_text
 from discover.readers.units import SMALLEST
 from discover.record_kind import classify
 from discover.records import Finding, Record
@@ -84,11 +85,13 @@ def read_record(
     findings += disagreeing
     record = _record(entry, file, sampled, values)
     if sampled.uneven:
-        resampled = classify(record).kind != "sine"
+        as_measured = record.sampled(time, measured)
+        # Every verb has to see the sine test in the times as measured too.
+        resampled = any(classify(found).kind != "sine" for found in (record, as_measured))
         level, text = resampling_text(sampled, resampled=resampled)
         findings.append(Finding(level, text, file))
         if not resampled:
-            record = record.sampled(time, measured)
+            record = as_measured
     findings.extend(check_labels(record))
     return record, findings, columns.units
 
@@ -208,9 +211,11 @@ def _within(
     time = columns.values["time"]
     inside = within(time, entry.span)
     if not inside.any():
+        ends = float(np.nanmin(time)), float(np.nanmax(time))
+        first, last = (time_text(end, (ends[1] - ends[0]) / time.size) for end in ends)
         raise InputError(
             "range",
-            expected=f"inside the record, {np.nanmin(time):.6g} to {np.nanmax(time):.6g} s",
+            expected=f"inside the record, {first} to {last} s",
             found=entry.span_text, where=file,
         )  # fmt: skip
     values = {name: column[inside] for name, column in columns.values.items()}

@@ -1,5 +1,7 @@
 """A stepped sine in one record is several sine tests; nothing else is."""
 
+import datetime
+
 import numpy as np
 import pytest
 
@@ -26,6 +28,7 @@ def stepped(steps, *, noise=1e-3, seed=0):
     return np.arange(x.size) / RATE, x
 
 
+BEGIN = datetime.datetime(2026, 5, 3, 23, 59, 56, 123_400, datetime.UTC)
 FREQUENCIES = ((0.5, 0.01, 4), (1.0, 0.01, 5), (2.0, 0.01, 8), (5.0, 0.01, 12))
 AMPLITUDES = ((1.0, 0.002, 6), (1.0, 0.004, 6), (1.0, 0.01, 6))
 
@@ -66,20 +69,33 @@ def test_no_other_motion_is_one(name):
     assert sine_steps(TIME, x) == []
 
 
-def written(folder):
-    """Write a stepped sine of a spring and a damper with 1 % of noise."""
+def written(folder, clock="{:.4f}".format):
+    """Write a stepped sine of a spring and a damper with 1 % of noise, its times by `clock`."""
     time, x = stepped(FREQUENCIES, noise=0.0)
     force = 2e4 * x + 300.0 * np.gradient(x, time)
     force += 0.01 * force.std() * np.random.default_rng(3).standard_normal(x.size)
     text = "time [s],displacement [mm],force [N]\n"
     rows = zip(time, 1e3 * x, force, strict=True)
-    text += "".join(f"{t:.4f},{p:.6f},{f:.4f}\n" for t, p, f in rows)
+    text += "".join(f"{clock(t)},{p:.6f},{f:.4f}\n" for t, p, f in rows)
     (folder / "all.csv").write_text(text)
     return time, x, force
 
 
-def test_a_drafted_campaign_has_a_sine_test_of_each_step(tmp_path):
-    written(tmp_path)
+def of_day(time):
+    return (BEGIN + datetime.timedelta(seconds=time)).strftime("%H:%M:%S.%f")[:-2]
+
+
+def of_date(time):
+    return (BEGIN + datetime.timedelta(seconds=time)).strftime("%Y-%m-%d %H:%M:%S.%f")[:-2]
+
+
+def of_unix(time):
+    return f"{BEGIN.timestamp() + time:.4f}"
+
+
+@pytest.mark.parametrize("clock", ["{:.4f}".format, of_day, of_date, of_unix])
+def test_a_drafted_campaign_has_a_sine_test_of_each_step(tmp_path, clock):
+    written(tmp_path, clock)
     draft = draft_campaign(tmp_path, ["all.csv"], title="t", answers=Answers({}, {}))
     (tmp_path / "campaign.toml").write_text(draft.toml())
     campaign = read_campaign(tmp_path)

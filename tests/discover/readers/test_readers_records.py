@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from discover.motion_fit import observe_all
 from discover.readers import read_campaign
 from discover.readers.clipping import clipped_motion_text, clipping_text
 from discover.readers.consistency import derivative_agreement
@@ -172,6 +173,20 @@ def test_a_logger_that_saves_little_at_rest_loses_nothing_there(tmp_path: Path) 
     moved = motion(time) + (time > 60.0) * np.sin(time)  # and now it does not rest
     with pytest.raises(InputError, match=r"time must be without gaps of more than 0.0\d+ s"):
         _read(tmp_path, time, moved, moved)
+
+
+@pytest.mark.parametrize("frequency", [1.0, 2.5, 5.0])
+def test_a_sine_test_whose_sampling_changes_is_one_to_every_verb(
+    tmp_path: Path, frequency: float
+) -> None:
+    time = np.r_[0.0:4.0:0.01, 4.0:10.0:0.002]
+    turn = 2 * np.pi * frequency * time
+    text = HEADER + "\n" + rows(time, 10.0 * np.sin(turn), np.sin(turn + 0.3))
+    found = read_campaign(campaign(tmp_path, text))
+    (observed,) = observe_all(found.records, 1)
+    assert observed.kind == "sine"
+    assert observed.frequency == pytest.approx(frequency, rel=1e-6)
+    assert any("the sampling changes within the record" in f.text for f in found.findings)
 
 
 def test_a_short_gap_is_bridged_and_a_long_one_loses_the_motion(tmp_path: Path) -> None:
