@@ -188,6 +188,7 @@ def read_columns(
     for index, column in zip(found.values(), raw, strict=True):
         _check_finite(source, index, column, inside)
     notes = [source.notes[index] for index in found.values() if index in source.notes]
+    notes += _calibrations(source, found, chosen)
     unused = _unused(source, found)
     return Columns(values, raw_time, chosen, unused, made, (*source.told, *notes))
 
@@ -259,14 +260,21 @@ def missing_column(source: Source, quantity: str, wanted: str, *, instead: str =
 def _unit_of(source: Source, index: int, quantity: str, stated: str | None) -> str | None:
     """Return a column's unit, checked; None where neither header nor ``[units]`` has it.
 
-    ``[units]`` may turn the sign of what the header says, as "-1 kN" does beside kN.
+    ``[units]`` may turn the sign of what the header says, as "-1 kN" does beside kN, and says what
+    one of it is where the header's is no unit of this kind, as "2 kN" does beside V.
     """
     kind = QUANTITIES[quantity]
     header = source.headers[index]
     own = stated_unit(source, index)
-    if own is None:
+    if own is None or (stated is not None and not measures(own, kind)):
         return stated
-    check_unit(own, kind, name=quantity, where=f"{source.name}, header {header!r}")
+    try:
+        check_unit(own, kind, name=quantity, where=f"{source.name}, header {header!r}")
+    except InputError as error:
+        remedy = f"; `{quantity}` in [units] may say what one of it is"
+        raise InputError(
+            error.what, expected=error.expected, found=error.found + remedy, where=error.where
+        ) from None
     if stated is not None and turns_sign(own, stated, kind):
         return stated
     if stated is not None and not same_unit(own, stated, kind):
@@ -277,6 +285,18 @@ def _unit_of(source: Source, index: int, quantity: str, stated: str | None) -> s
             where=source.name,
         )
     return own
+
+
+def _calibrations(
+    source: Source, found: Mapping[str, int], chosen: Mapping[str, str | None]
+) -> list[str]:
+    """Return what to tell of columns whose header says a unit of another kind."""
+    told = []
+    for quantity, index in found.items():
+        own, unit = stated_unit(source, index), chosen[quantity]
+        if own is not None and not measures(own, QUANTITIES[quantity]):
+            told.append(f"one {own} of {source.headers[index]!r} is taken as {unit}, by [units]")
+    return told
 
 
 def _check_finite(

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from discover.readers.columns import find_column, split_header, stated_unit
+from discover.readers.columns import QUANTITIES, find_column, split_header, stated_unit
 from discover.readers.entries import Entry
 from discover.readers.formats import OPENERS, open_file
 from discover.readers.guess import Guess, TableGuess, guess_table
 from discover.readers.long_record import first_part
+from discover.readers.names import name_score
 from discover.readers.source import Book, Source
+from discover.readers.units import is_unit, measures
 from models.checks import InputError, nearest, printable, shown
 
 _VOLTS = ("V", "mV", "volt", "volts", "Volt", "Volts")
+_EXAMPLES = {"displacement": "5 mm", "force": "2 kN"}
 _MOST_TOLD = 30  # headers
 NO_TIME = "no column for time among"
 """Begins what is told of a table that lacks nothing but time."""
@@ -84,23 +88,26 @@ def _tables(
             if not lacks:
                 able.append((source, guess))
             elif not first:
-                first = _lacking(source, lacks)
+                first = _lacking(source, lacks, answers.columns)
         if able:
             return able, ""
     return [], first
 
 
-def _lacking(source: Source, lacks: Sequence[str]) -> str:
+def _lacking(source: Source, lacks: Sequence[str], named: Mapping[str, str]) -> str:
     """Return what a table lacks and what to do about it."""
     names = printable(", ".join(source.headers[:12]))
     text = f"no column for {' and '.join(lacks)} among {names}"
     if tuple(lacks) == ("time",):
         return text + "; --sampling-rate '1 kHz' makes the times, or --column time=HEADER names it"
-    volts = [h for i, h in enumerate(source.headers) if stated_unit(source, i) in _VOLTS]
-    if volts:
+    foreign = _foreign(source, lacks, named)
+    if foreign is not None:
+        quantity, index = foreign
+        header = printable(source.headers[index])
+        column, unit = (shlex.quote(f"{quantity}={v}") for v in (header, _EXAMPLES[quantity]))
         return text + (
-            f"; {printable(volts[0])} is in volts: write its header without the unit, and give the"
-            " calibration as the unit of one volt, as --unit displacement='5 mm'"
+            f"; {header} is in {printable(str(stated_unit(source, index)))}: if it is the"
+            f" {quantity}, --column {column} --unit {unit} say so, and what one of it is"
         )
     if tuple(lacks) == ("displacement",):
         return text + (
@@ -108,6 +115,28 @@ def _lacking(source: Source, lacks: Sequence[str]) -> str:
             " integrate it in the file"
         )
     return text + f"; --column {lacks[0]}=HEADER names it"
+
+
+def _foreign(
+    source: Source, lacks: Sequence[str], named: Mapping[str, str]
+) -> tuple[str, int] | None:
+    """Return what is lacking and the column that may be it, but for a unit of another kind.
+
+    It is the one that the user names, or one of the quantity's name or in volts.
+    """
+    known = {find_column(source, q, header): q for q, header in named.items()}
+    for quantity in (q for q in lacks if q in _EXAMPLES):
+        for index, header in enumerate(source.headers):
+            unit = stated_unit(source, index)
+            if unit is None or not is_unit(unit) or measures(unit, QUANTITIES[quantity]):
+                continue
+            if quantity in known.values() or index in known:
+                fitting = known.get(index) == quantity
+            else:
+                fitting = unit in _VOLTS or name_score(split_header(header)[0], quantity) > 0.0
+            if fitting:
+                return quantity, index
+    return None
 
 
 def _guessed(source: Source, answers: Answers) -> TableGuess:
@@ -122,11 +151,13 @@ def _guessed(source: Source, answers: Answers) -> TableGuess:
             continue
         named = source.headers[index]
         columns = {q: g for q, g in columns.items() if g.header != named or q == quantity}
-        stated = stated_unit(source, index) or ""
-        unit = (
-            stated or answers.units.get(quantity, "") or _unit_of(columns.get(quantity), quantity)
-        )
-        columns[quantity] = Guess(quantity, named, "sure", "you said so", unit, bool(stated))
+        stated, told = stated_unit(source, index) or "", answers.units.get(quantity, "")
+        fits = measures(stated, QUANTITIES[quantity])
+        if not fits and not told and is_unit(stated):
+            columns.pop(quantity, None)  # nobody says what one volt is
+            continue
+        unit = (stated if fits else told) or _unit_of(columns.get(quantity), quantity)
+        columns[quantity] = Guess(quantity, named, "sure", "you said so", unit, fits)
     missing = [q for q in ("time", "force", "displacement") if q not in columns]
     timed = source.step is not None
     lacks = tuple(q for q in missing if not (q == "time" and timed))
@@ -170,4 +201,4 @@ def _named(entry: Entry, book: Book, source: Source) -> Entry:
 def without(file: str, error: InputError) -> str:
     """Return an error's text without the file that it begins with."""
     text = str(error)
-    return text.removeprefix(file).lstrip(" :") if text.startswith(file) else text
+    return text.removeprefix(file).lstrip(" :,") if text.startswith(file) else text

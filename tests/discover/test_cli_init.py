@@ -265,8 +265,10 @@ def test_a_counter_of_samples_is_no_time(here: Path, capsys: pytest.CaptureFixtu
          "no column for displacement among Time [s], Velocity [mm/s], Force [N]; --column"
          " displacement=HEADER names it; velocity or acceleration alone will not do"),
         ("Time [s],LVDT [V],Load [kN]", TIME,
-         "LVDT [V] is in volts: write its header without the unit, and give the calibration as the"
-         " unit of one volt, as --unit displacement='5 mm'"),
+         "LVDT [V] is in V: if it is the displacement, --column 'displacement=LVDT [V]'"
+         " --unit 'displacement=5 mm' say so, and what one of it is"),
+        ("Time [s],LVDT [mm],Load (lbs)", TIME,
+         "Load (lbs) is in lbs: if it is the force, --column 'force=Load (lbs)'"),
         ("Time [s],LVDT [mm],Load [kN]", np.floor(TIME),
          "many samples share one time, which is too coarse: give `sampling_rate`"),
         ("Time [s],LVDT [mm],Load [kN]", TIME % 1.5,
@@ -288,6 +290,26 @@ def test_what_a_file_lacks_comes_with_what_to_do(
     err = capsys.readouterr().err
     assert message in err
     assert err.count("\n") == 1
+
+
+def test_a_column_in_volts_takes_its_calibration(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    x, force = _test(2.0)
+    table = np.column_stack([TIME, 1e3 * x / 5.0, force / 2000.0])
+    header = "Time [s],CH1 [V],CH2 [V]"
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    columns = ["--column", "displacement=CH1", "--column", "force=CH2"]
+    assert main(["init", ".", *columns, "--unit", "displacement=5 mm"]) == 2
+    assert "CH2 [V] is in V: if it is the force" in capsys.readouterr().err
+    assert main(["init", ".", *columns, "--unit", "displacement=5 mm", "--unit", "force=2 kN"]) == 0
+    found = read_campaign(here)
+    np.testing.assert_allclose(found.records[0].displacement, x, atol=1e-9)
+    np.testing.assert_allclose(found.records[0].force, force, atol=1e-4)
+    assert [f.text for f in found.findings if f.level == "note"] == [
+        "one V of 'CH1 [V]' is taken as 5 mm, by [units]",
+        "one V of 'CH2 [V]' is taken as 2 kN, by [units]",
+    ]
 
 
 def test_a_calibration_is_a_unit(here: Path) -> None:
