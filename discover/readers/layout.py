@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import takewhile
 
 import numpy as np
 from numpy.typing import NDArray
 
+from discover.readers.columns import split_header
 from discover.readers.names import known_name
 from discover.readers.numerals import is_number
 from discover.readers.units import is_unit
@@ -15,6 +18,8 @@ from discover.readers.units import is_unit
 Mask = NDArray[np.bool_]
 
 _LONGEST_PREAMBLE = 2000  # rows before the samples that are looked at
+_LONGEST_LIST = 12  # rows of texts between the names and the samples
+_UNIT_ROW = re.compile(r"\b(units?|einheit(en)?|unités?)\b", re.IGNORECASE)
 _UNIT_MARKS = ("[", "(")
 
 
@@ -143,6 +148,12 @@ def _is_header(fields: Sequence[str], width: int) -> bool:
     return len(fields) == width or len(named) > 1
 
 
+def _numbered(fields: Sequence[str], below: Sequence[str], width: int) -> bool:
+    """Return whether names are channels' numbers but for the first, above a row of units only."""
+    whole = len(fields) == len(below) == width > 1 and not is_number(fields[0])
+    return whole and all(f.isdigit() for f in fields[1:]) and all(map(is_unit, below))
+
+
 def _units(fields: Sequence[str], names: Sequence[str]) -> dict[int, str] | None:
     """Return a row's units by column, or None where it is no row of units below the names.
 
@@ -176,7 +187,8 @@ def _heading(rows: Rows, begin: int, first: int) -> tuple[int | None, dict[int, 
         or _named(rows, marked[::-1][:2], width, whole=True)
     )
     if found is not None:
-        return *found, first
+        header, units = found
+        return header if units else _stating_units(rows, above, header, width), units, first
     if above:  # rows that are damaged follow the header: they are for reading to complain of
         top = _trimmed(rows.fields(above[-1]))
         damaged = len(top) == width or all(_is_sample(rows, row) for row in above[:-1])
@@ -185,13 +197,33 @@ def _heading(rows: Rows, begin: int, first: int) -> tuple[int | None, dict[int, 
     return None, {}, first
 
 
+def _stating_units(rows: Rows, above: Sequence[int], header: int, width: int) -> int:
+    """Return the row of names that states their units, of all texts right above the samples.
+
+    Below the names an amplifier may list channels, sensors and rates, a row each.
+    """
+    texts = {row: _trimmed(rows.fields(row)) for row in above[:_LONGEST_LIST]}
+    block = list(takewhile(lambda row: _is_header(texts[row], width) and len(texts[row]) == width,
+                           texts))  # fmt: skip
+    counts = {row: sum(_states_unit(field) for field in texts[row]) for row in block}
+    if counts.get(header, 1):
+        return header
+    best = max(block, key=lambda row: counts[row])
+    return best if counts[best] >= min(2, width) else header
+
+
+def _states_unit(header: str) -> bool:
+    unit = split_header(header)[1]
+    return unit is not None and is_unit(unit)
+
+
 def _named(
     rows: Rows, near: Sequence[int], width: int, *, whole: bool = False
 ) -> tuple[int, dict[int, str]] | None:
     """Return which of the two rows above is the header, nearest first, and the units by column."""
     texts = [_trimmed(rows.fields(row)) for row in near]
     fine = [_is_header(text, width) and not (whole and len(text) != width) for text in texts]
-    if len(near) > 1 and fine[1]:
+    if len(near) > 1 and (fine[1] or _numbered(texts[1], texts[0], width)):
         units = _units(texts[0], texts[1])
         if units is not None:
             return near[1], units
@@ -231,9 +263,19 @@ def _layout(
         names = tuple(field.strip() for field in rows.fields(header))
     top = first if header is None else header
     preamble = [_trimmed(rows.fields(r)) for r in range(begin, top) if not rows.blank[r]]
+    units = units or _listed_units(preamble, names)
     alone = [f[0] for f in preamble[-1:] if len([x for x in f if x]) == 1 and f[0]]
     title = alone[0] if alone and not set(alone[0]) & set(":=") else ""
     return Layout(names, units, header, first, last, title[:80], tuple(_notes(preamble)))
+
+
+def _listed_units(preamble: Sequence[Sequence[str]], names: Sequence[str]) -> dict[int, str]:
+    """Return the units of a row of the preamble that says to hold them, a field a column."""
+    for fields in preamble:
+        named = bool(fields) and _UNIT_ROW.search(fields[0]) is not None
+        if named and len(fields) == len(names) and all(map(is_unit, fields[1:])):
+            return {i: f for i, f in enumerate(fields) if i}
+    return {}
 
 
 def _notes(preamble: Sequence[Sequence[str]]) -> Iterator[tuple[str, str]]:

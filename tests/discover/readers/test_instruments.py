@@ -315,6 +315,27 @@ TEXTS = {
         '[columns]\ntime = "t"\ndisplacement = "x"\nforce = "F"\n'
         '[units]\ntime = "s"\ndisplacement = "mm"\nforce = "kN"\n' + ONE,
     ),
+    "catman, sensors and rates below the names": (
+        "HBM_CATMAN_DATAFILE_60\nKommentar=\tDämpfer 7\nAnzahl Kanäle= 3\n\n"
+        + _table(
+            "Zeit  1 - Standardmessrate [s]\tMX840 CH 1 Weg [mm]\tMX840 CH 2 Kraft [kN]\n"
+            "CH=0\tCH=1\tCH=2\nSR=200 Hz\tSR=200 Hz\tSR=200 Hz\nTyp=Zeit\tTyp=WA100\tTyp=U9C 1kN",
+            sep="\t", decimal=",",
+        ),
+        '[columns]\ntime = "Zeit  1 - Standardmessrate"\n'
+        'displacement = "MX840 CH 1 Weg"\nforce = "MX840 CH 2 Kraft"\n' + ONE,
+    ),
+    "oscilloscope, channels by number": (
+        _table("x-axis,1,2\nsecond,Volt,Volt", sep=","),
+        '[columns]\ntime = "x-axis"\ndisplacement = "1"\nforce = "2"\n'
+        '[units]\ndisplacement = "mm"\nforce = "kN"\n' + ONE,
+    ),
+    "oscilloscope, units in the preamble": (
+        "Model,MSO24\nHorizontal Units,s,\nSample Interval,0.005,\nVertical Units,V,V\n"
+        + _table("Vertical Offset,0,0\n,,\n,,\nLabel,Stroke,Load\nTIME,CH1,CH2", sep=","),
+        '[columns]\ndisplacement = "CH1"\nforce = "CH2"\n'
+        '[units]\ntime = "s"\ndisplacement = "mm"\nforce = "kN"\n' + ONE,
+    ),
     "ControlDesk, labels in the first column": (
         "descriptor;;;\n;XAxis=\"Time\";;\n\ntrace_settings;;;\n"
         'path;"Model Root/Time";"Model Root/Out1";"Model Root/Out2"\n'
