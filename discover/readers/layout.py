@@ -266,7 +266,11 @@ def _layout(
     units = units or _listed_units(preamble, names)
     alone = [f[0] for f in preamble[-1:] if len([x for x in f if x]) == 1 and f[0]]
     title = alone[0] if alone and not set(alone[0]) & set(":=") else ""
-    return Layout(names, units, header, first, last, title[:80], tuple(_notes(preamble)))
+    held = [each for r in range(top + 1, first) for each in _numbers(names, rows.fields(r))]
+    own = len(_trimmed(rows.fields(first)))
+    if held and {name for name in names[own:] if name} <= dict(held).keys():
+        names = names[:own]  # what stands beyond is of the file, and has no samples
+    return Layout(names, units, header, first, last, title[:80], (*_notes(preamble), *held))
 
 
 def _listed_units(preamble: Sequence[Sequence[str]], names: Sequence[str]) -> dict[int, str]:
@@ -276,6 +280,11 @@ def _listed_units(preamble: Sequence[Sequence[str]], names: Sequence[str]) -> di
         if named and len(fields) == len(names) and all(map(is_unit, fields[1:])):
             return {i: f for i, f in enumerate(fields) if i}
     return {}
+
+
+def _numbers(names: Sequence[str], fields: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield the numbers that stand below names beside the units, as an increment of time."""
+    return ((name, f) for name, f in zip(names, fields, strict=False) if name and is_number(f))
 
 
 def _notes(preamble: Sequence[Sequence[str]]) -> Iterator[tuple[str, str]]:

@@ -16,7 +16,7 @@ _RATE = re.compile(
     re.IGNORECASE,
 )
 _STEP = re.compile(
-    r"dt|delta[\s_-]*[tx]|(sampl(e|ing)|scan|time)[\s_-]*(interval|period|time|step|increment)"
+    r"dt|(x[\s_-]*|time[\s_-]*)?increment|delta[\s_-]*[tx]|(sampl(e|ing)|scan|time)[\s_-]*(interval|period|time|step|increment)"
     r"|wf_increment|abtast(intervall|zeit|periode)"
     r"|p(é|e)riode[\s_-]*d.?[\s_]?(é|e)chantillonnage",
     re.IGNORECASE,

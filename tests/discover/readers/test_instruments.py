@@ -330,6 +330,12 @@ TEXTS = {
         '[columns]\ntime = "x-axis"\ndisplacement = "1"\nforce = "2"\n'
         '[units]\ndisplacement = "mm"\nforce = "kN"\n' + ONE,
     ),
+    "oscilloscope, the increment beside the units": (
+        _table("CH1,CH2,Start,Increment,\nVolt,Volt,-2.0e+00,5.0e-03", sep=",", timed=False,
+               more=","),
+        '[columns]\ndisplacement = "CH1"\nforce = "CH2"\n'
+        '[units]\ndisplacement = "mm"\nforce = "kN"\n' + ONE,
+    ),
     "oscilloscope, units in the preamble": (
         "Model,MSO24\nHorizontal Units,s,\nSample Interval,0.005,\nVertical Units,V,V\n"
         + _table("Vertical Offset,0,0\n,,\n,,\nLabel,Stroke,Load\nTIME,CH1,CH2", sep=","),
