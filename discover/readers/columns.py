@@ -99,12 +99,13 @@ def _over_unit(name: str, unit: str) -> bool:
 def stated_unit(source: Source, index: int) -> str | None:
     """Return the unit that a file states for a column, None where it states none.
 
-    What says how a clock is written, as ``hh:mm:ss``, is no unit: a clock's is known.
+    What a header has in brackets is no unit where the file itself knows it, as that of a clock
+    below ``Time [hh:mm:ss]`` or ``Time (UTC)``.
     """
-    own = split_header(source.headers[index])[1]
-    if own is not None and is_clock_form(own):
-        own = None
-    return own or source.units.get(index)
+    own, known = split_header(source.headers[index])[1], source.units.get(index)
+    if own is None or is_clock_form(own) or (known is not None and not is_unit(own)):
+        return known
+    return own
 
 
 def _plain(name: str) -> str:

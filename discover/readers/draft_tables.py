@@ -14,11 +14,11 @@ from discover.readers.guess import Guess, TableGuess, guess_table
 from discover.readers.long_record import first_part
 from discover.readers.names import name_score
 from discover.readers.source import Book, Source
-from discover.readers.units import is_unit, measures
+from discover.readers.units import measures
 from models.checks import InputError, nearest, printable, shown
 
 _VOLTS = ("V", "mV", "volt", "volts", "Volt", "Volts")
-_EXAMPLES = {"displacement": "5 mm", "force": "2 kN"}
+_EXAMPLES = {"time": "1 ms", "displacement": "5 mm", "force": "2 kN"}
 _MOST_TOLD = 30  # headers
 NO_TIME = "no column for time among"
 """Begins what is told of a table that lacks nothing but time."""
@@ -98,17 +98,17 @@ def _lacking(source: Source, lacks: Sequence[str], named: Mapping[str, str]) -> 
     """Return what a table lacks and what to do about it."""
     names = printable(", ".join(source.headers[:12]))
     text = f"no column for {' and '.join(lacks)} among {names}"
-    if tuple(lacks) == ("time",):
-        return text + "; --sampling-rate '1 kHz' makes the times, or --column time=HEADER names it"
     foreign = _foreign(source, lacks, named)
     if foreign is not None:
         quantity, index = foreign
         header = printable(source.headers[index])
         column, unit = (shlex.quote(f"{quantity}={v}") for v in (header, _EXAMPLES[quantity]))
         return text + (
-            f"; {header} is in {printable(str(stated_unit(source, index)))}: if it is the"
+            f"; {header} has the unit {shown(stated_unit(source, index))}: if it is the"
             f" {quantity}, --column {column} --unit {unit} say so, and what one of it is"
         )
+    if tuple(lacks) == ("time",):
+        return text + "; --sampling-rate '1 kHz' makes the times, or --column time=HEADER names it"
     if tuple(lacks) == ("displacement",):
         return text + (
             "; --column displacement=HEADER names it; velocity or acceleration alone will not do:"
@@ -128,12 +128,13 @@ def _foreign(
     for quantity in (q for q in lacks if q in _EXAMPLES):
         for index, header in enumerate(source.headers):
             unit = stated_unit(source, index)
-            if unit is None or not is_unit(unit) or measures(unit, QUANTITIES[quantity]):
+            if unit is None or measures(unit, QUANTITIES[quantity]):
                 continue
             if quantity in known.values() or index in known:
                 fitting = known.get(index) == quantity
             else:
-                fitting = unit in _VOLTS or name_score(split_header(header)[0], quantity) > 0.0
+                by_name = name_score(split_header(header)[0], quantity) > 0.0
+                fitting = by_name or (unit in _VOLTS and quantity != "time")
             if fitting:
                 return quantity, index
     return None
@@ -153,8 +154,8 @@ def _guessed(source: Source, answers: Answers) -> TableGuess:
         columns = {q: g for q, g in columns.items() if g.header != named or q == quantity}
         stated, told = stated_unit(source, index) or "", answers.units.get(quantity, "")
         fits = measures(stated, QUANTITIES[quantity])
-        if not fits and not told and is_unit(stated):
-            columns.pop(quantity, None)  # nobody says what one volt is
+        if stated and not fits and not told:
+            columns.pop(quantity, None)  # nobody says what one of it is, as one volt
             continue
         unit = (stated if fits else told) or _unit_of(columns.get(quantity), quantity)
         columns[quantity] = Guess(quantity, named, "sure", "you said so", unit, fits)

@@ -10,7 +10,7 @@ import numpy as np
 from discover.readers.columns import QUANTITIES, split_header, stated_unit
 from discover.readers.names import CANONICAL, LETTER, WORD, name_score
 from discover.readers.source import Source
-from discover.readers.units import is_unit, measures, to_si
+from discover.readers.units import measures, to_si
 from models.checks import Array, InputError
 
 SURE, LIKELY, UNSURE = "sure", "likely", "unsure"
@@ -110,7 +110,7 @@ def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
     for index, header in enumerate(source.headers):
         unit = stated_unit(source, index)
         fitting = unit is not None and measures(unit, QUANTITIES[quantity])
-        if index in taken or (unit is not None and is_unit(unit) and not fitting):
+        if index in taken or (unit is not None and not fitting):
             continue
         name = name_score(split_header(header)[0], quantity)
         if source.roles.get(quantity) == index:

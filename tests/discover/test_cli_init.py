@@ -265,10 +265,12 @@ def test_a_counter_of_samples_is_no_time(here: Path, capsys: pytest.CaptureFixtu
          "no column for displacement among Time [s], Velocity [mm/s], Force [N]; --column"
          " displacement=HEADER names it; velocity or acceleration alone will not do"),
         ("Time [s],LVDT [V],Load [kN]", TIME,
-         "LVDT [V] is in V: if it is the displacement, --column 'displacement=LVDT [V]'"
+         "LVDT [V] has the unit 'V': if it is the displacement, --column 'displacement=LVDT [V]'"
          " --unit 'displacement=5 mm' say so, and what one of it is"),
+        ("Time [s],LVDT [mm],Kraft [kp]", TIME,
+         "Kraft [kp] has the unit 'kp': if it is the force, --column 'force=Kraft [kp]'"),
         ("Time [s],LVDT [mm],Load (lbs)", TIME,
-         "Load (lbs) is in lbs: if it is the force, --column 'force=Load (lbs)'"),
+         "Load (lbs) has the unit 'lbs': if it is the force, --column 'force=Load (lbs)'"),
         ("Time [s],LVDT [mm],Load [kN]", np.floor(TIME),
          "many samples share one time, which is too coarse: give `sampling_rate`"),
         ("Time [s],LVDT [mm],Load [kN]", TIME % 1.5,
@@ -301,7 +303,7 @@ def test_a_column_in_volts_takes_its_calibration(
     np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
     columns = ["--column", "displacement=CH1", "--column", "force=CH2"]
     assert main(["init", ".", *columns, "--unit", "displacement=5 mm"]) == 2
-    assert "CH2 [V] is in V: if it is the force" in capsys.readouterr().err
+    assert "CH2 [V] has the unit 'V': if it is the force" in capsys.readouterr().err
     assert main(["init", ".", *columns, "--unit", "displacement=5 mm", "--unit", "force=2 kN"]) == 0
     found = read_campaign(here)
     np.testing.assert_allclose(found.records[0].displacement, x, atol=1e-9)

@@ -485,7 +485,7 @@ def test_a_clock_that_passes_noon_or_midnight_goes_on(
     assert found.findings == ()  # a clock's unit is known
 
 
-@pytest.mark.parametrize("header", ["Time [hh:mm:ss]", "Time (HH:MM:SS.fff)"])
+@pytest.mark.parametrize("header", ["Time [hh:mm:ss]", "Time (HH:MM:SS.fff)", "Time (UTC)"])
 @pytest.mark.parametrize("mark", [".", ":"])
 def test_a_header_may_say_how_a_clock_is_written(tmp_path: Path, header: str, mark: str) -> None:
     begin = datetime.datetime(2026, 5, 3, 12, 34, 56)
