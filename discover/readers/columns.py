@@ -37,6 +37,7 @@ QUANTITIES = {
 }
 """The columns that a record may have, each with the kind of its unit."""
 
+_PLACE = re.compile(r"column (\d{1,6})")
 _LONGEST_NAME = 80  # characters of a header that are looked at
 
 
@@ -115,6 +116,8 @@ def _plain(name: str) -> str:
 def find_column(source: Source, quantity: str, wanted: str) -> int | None:
     """Return the index of the header that is meant; None where there is none.
 
+    A column is named by its place too, as ``column 2``.
+
     Raises
     ------
     InputError
@@ -129,10 +132,16 @@ def find_column(source: Source, quantity: str, wanted: str) -> int | None:
         found = [i for i, name in enumerate(names) if name.endswith((f".{target}", f"/{target}"))]
     if not found and wanted == quantity and quantity in source.roles:
         found = [source.roles[quantity]]
+    place = _PLACE.fullmatch(wanted)
+    if not found and place is not None and 1 <= int(place[1]) <= len(source.headers):
+        found = [int(place[1]) - 1]
     if len(found) > 1:
         listed = ", ".join(repr(source.headers[i]) for i in found)
         if len({source.headers[i] for i in found}) == 1 and source.cell is not None:
-            listed += "; take the cells of one test by `range` in [[records]], as \"A1:C900\""
+            listed += (
+                '; take the cells of one test by `range` in [[records]], as "A1:C900", where it is'
+                f' a sheet; or name a column by its place, as "column {found[0] + 1}"'
+            )
         raise InputError(quantity, expected="one column", found=listed, where=source.name)
     return found[0] if found else None
 

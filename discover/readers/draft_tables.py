@@ -151,6 +151,7 @@ def _guessed(source: Source, answers: Answers) -> TableGuess:
         if index is None:
             continue
         named = source.headers[index]
+        named = named if source.headers.count(named) == 1 else header  # which is its place
         columns = {q: g for q, g in columns.items() if g.header != named or q == quantity}
         stated, told = stated_unit(source, index) or "", answers.units.get(quantity, "")
         fits = measures(stated, QUANTITIES[quantity])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import takewhile
+from itertools import pairwise, takewhile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -187,8 +187,7 @@ def _heading(rows: Rows, begin: int, first: int) -> tuple[int | None, dict[int, 
         or _named(rows, marked[::-1][:2], width, whole=True)
     )
     if found is not None:
-        header, units = found
-        return header if units else _stating_units(rows, above, header, width), units, first
+        return *(found if found[1] else _stating_units(rows, above, found[0], width)), first
     if above:  # rows that are damaged follow the header: they are for reading to complain of
         top = _trimmed(rows.fields(above[-1]))
         damaged = len(top) == width or all(_is_sample(rows, row) for row in above[:-1])
@@ -197,19 +196,25 @@ def _heading(rows: Rows, begin: int, first: int) -> tuple[int | None, dict[int, 
     return None, {}, first
 
 
-def _stating_units(rows: Rows, above: Sequence[int], header: int, width: int) -> int:
-    """Return the row of names that states their units, of all texts right above the samples.
+def _stating_units(
+    rows: Rows, above: Sequence[int], header: int, width: int
+) -> tuple[int, dict[int, str]]:
+    """Return the row of names that states their units, and units by column from a row below it.
 
-    Below the names an amplifier may list channels, sensors and rates, a row each.
+    It is one of all texts right above the samples: below it an instrument may list channels,
+    sensors, rates or types, a row each.
     """
     texts = {row: _trimmed(rows.fields(row)) for row in above[:_LONGEST_LIST]}
     block = list(takewhile(lambda row: _is_header(texts[row], width) and len(texts[row]) == width,
                            texts))  # fmt: skip
     counts = {row: sum(_states_unit(field) for field in texts[row]) for row in block}
     if counts.get(header, 1):
-        return header
+        return header, {}
+    for below, row in pairwise(block):
+        if below != header and all(map(is_unit, texts[below])):
+            return row, dict(enumerate(texts[below]))
     best = max(block, key=lambda row: counts[row])
-    return best if counts[best] >= min(2, width) else header
+    return best if counts[best] >= min(2, width) else header, {}
 
 
 def _states_unit(header: str) -> bool:

@@ -325,6 +325,14 @@ TEXTS = {
         '[columns]\ntime = "Zeit  1 - Standardmessrate"\n'
         'displacement = "MX840 CH 1 Weg"\nforce = "MX840 CH 2 Kraft"\n' + ONE,
     ),
+    "DIAdem, types below the units": (
+        _table("Time;LVDT;Load\ns;mm;kN\nDOUBLE;DOUBLE;DOUBLE", sep=";"),
+        '[columns]\ndisplacement = "LVDT"\nforce = "Load"\n' + ONE,
+    ),
+    "names that stand twice, by their places": (
+        _table("time [s],A [mm],A [kN]", sep=",").replace("A [kN]", "A [mm]"),
+        '[columns]\ndisplacement = "column 2"\nforce = "column 3"\n[units]\nforce = "kN"\n' + ONE,
+    ),
     "oscilloscope, channels by number": (
         _table("x-axis,1,2\nsecond,Volt,Volt", sep=","),
         '[columns]\ntime = "x-axis"\ndisplacement = "1"\nforce = "2"\n'
