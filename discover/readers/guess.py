@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from discover.readers.columns import QUANTITIES, split_header, stated_unit
-from discover.readers.names import CANONICAL, LETTER, WORD, name_score
+from discover.readers.names import CANONICAL, LETTER, WORD, name_score, of_command
 from discover.readers.source import Source
 from discover.readers.units import measures, to_si
 from models.checks import Array, InputError
@@ -116,7 +116,8 @@ def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
         if source.roles.get(quantity) == index:
             name = CANONICAL
         if name > 0.0 or (fitting and quantity in _NEEDED):
-            scores[index] = (name + fitting, name, fitting)
+            commanded = 0.5 if of_command(split_header(header)[0]) else 1.0
+            scores[index] = (name + commanded * fitting, name, fitting)
     ordered = sorted(scores, key=lambda i: -scores[i][0])
     if quantity == "time":
         rising = [i for i in ordered if _is_rising(source, i)]
@@ -197,7 +198,8 @@ def _guessed_unit(source: Source, index: int, quantity: str) -> str:
 def _by_elimination(source: Source, found: Mapping[str, Guess]) -> Mapping[str, Guess]:
     """Return guesses for what nothing speaks for, of the columns that nothing else is.
 
-    Time is a column that rises evenly. Of two that are left displacement is the smoother.
+    Time is a column that rises evenly, and no motion and no force does. Of two that are left
+    displacement is the smoother.
     """
     used = {guess.header for guess in found.values()}
     free = {
@@ -211,11 +213,10 @@ def _by_elimination(source: Source, found: Mapping[str, Guess]) -> Mapping[str, 
         and not (np.diff(column) == 1.0).all()  # a counter of samples
     }
     result: dict[str, Guess] = {}
-    if "time" not in found and source.step is None:
-        even = [i for i, column in free.items() if _evenly_spaced(column)]
-        if even:
-            result["time"] = _eliminated(source, even[0], "time", "it alone rises evenly")
-            del free[even[0]]
+    even = [i for i, column in free.items() if _evenly_spaced(column)]
+    free = {i: column for i, column in free.items() if i not in even}
+    if even and "time" not in found and source.step is None:
+        result["time"] = _eliminated(source, even[0], "time", "it alone rises evenly")
     wanted = [q for q in ("displacement", "force") if q not in found]
     smooth = sorted(free, key=lambda i: _roughness(free[i]))
     if 0 < len(wanted) <= len(smooth):

@@ -41,8 +41,7 @@ def name_score(header: str, quantity: str) -> float:
     >>> name_score("Voltage", "force")
     0.0
     """
-    plain = header[:_LONGEST].strip().lower().translate(_PLAIN)
-    plain = plain.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
+    plain = _plain(header)
     if plain == quantity:
         return CANONICAL
     tokens = [token for token in _SPLIT.split(plain) if token]
@@ -56,7 +55,26 @@ def name_score(header: str, quantity: str) -> float:
             for word in words
         ):
             score = max(score, PART)
-    return 0.5 * score if _COMMANDS & set(tokens) else score
+    return 0.5 * score if of_command(header) else score
+
+
+def of_command(header: str) -> bool:
+    """Return whether a header's name is of what was asked for, not of what was measured.
+
+    Examples
+    --------
+    >>> of_command("displacement setpoint"), of_command("Sollweg"), of_command("Istweg")
+    (True, True, False)
+    """
+    tokens = [token for token in _SPLIT.split(_plain(header)) if token]
+    long = tuple(word for word in _COMMANDS if len(word) >= _LONG)
+    return any(token in _COMMANDS or token.startswith(long) for token in tokens)
+
+
+def _plain(header: str) -> str:
+    """Return a header's name in small letters without accents, and without the groups it is in."""
+    plain = header[:_LONGEST].strip().lower().translate(_PLAIN)
+    return plain.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
 
 
 def known_name(header: str) -> bool:

@@ -294,6 +294,27 @@ def test_what_a_file_lacks_comes_with_what_to_do(
     assert err.count("\n") == 1
 
 
+def test_the_commanded_motion_is_not_the_measured_one(here: Path) -> None:
+    _csv(here / "a.csv", "Zeit (s);Sollweg (mm);Kraft (kN)", 2.0)
+    lines = (here / "a.csv").read_text().splitlines()
+    twice = [";".join((*line.split(";"), line.split(";")[1])) for line in lines]
+    twice[0] = "Zeit (s);Sollweg (mm);Kraft (kN);Istweg (mm)"
+    (here / "a.csv").write_text("\n".join(twice))
+    assert main(["init", "."]) == 0
+    toml = tomllib.loads((here / "campaign.toml").read_text())
+    assert toml["columns"]["displacement"] == "Istweg"
+
+
+def test_a_column_that_rises_evenly_is_no_motion(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, force = _test(2.0)
+    rows = "".join(f"{t:.4f},{f:.4f}\n" for t, f in zip(TIME, force, strict=True))
+    (here / "scope.csv").write_text("Sampling rate: 400 Hz\n\n" + rows)
+    assert main(["init", "."]) == 2
+    assert "no column for force and displacement among column 1, column 2" in capsys.readouterr().err
+
+
 def test_a_column_in_volts_takes_its_calibration(
     here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
