@@ -122,8 +122,9 @@ def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
     if quantity == "time":
         rising = [i for i in ordered if _is_rising(source, i)]
         # One that fails is still the time: reading it tells its line and what is wrong there.
-        named = [i for i in ordered if source.step is None and scores[i][0] >= WORD]
-        ordered = rising or named
+        known = {i for i in ordered if _named_unit(source.headers[i], quantity)}
+        named = [i for i in ordered if scores[i][0] >= WORD or i in known]
+        ordered = rising or (named if source.step is None else [])
     for index in ordered:
         score, name, fitting = scores[index]
         near = [i for i in scores if i != index and score - scores[i][0] < _NEAR]

@@ -276,6 +276,7 @@ def test_a_counter_of_samples_is_no_time(here: Path, capsys: pytest.CaptureFixtu
         ("Time [s],LVDT [mm],Load [kN]", TIME % 1.5,
          "line 602: time must be strictly increasing, got 0 s after 1.4975 s: it falls (3 such"
          " places); it begins again, as of several tests in one table"),
+        ("t_s,x_mm,F_N", TIME % 1.5, "it begins again, as of several tests in one table"),
     ],
 )  # fmt: skip
 def test_what_a_file_lacks_comes_with_what_to_do(
@@ -312,7 +313,8 @@ def test_a_column_that_rises_evenly_is_no_motion(
     rows = "".join(f"{t:.4f},{f:.4f}\n" for t, f in zip(TIME, force, strict=True))
     (here / "scope.csv").write_text("Sampling rate: 400 Hz\n\n" + rows)
     assert main(["init", "."]) == 2
-    assert "no column for force and displacement among column 1, column 2" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "no column for force and displacement among column 1, column 2" in told
 
 
 def test_a_column_in_volts_takes_its_calibration(
