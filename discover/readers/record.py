@@ -85,13 +85,8 @@ def read_record(
     findings += disagreeing
     record = _record(entry, file, sampled, values)
     if sampled.uneven:
-        as_measured = record.sampled(time, measured)
-        # Every verb has to see the sine test in the times as measured too.
-        resampled = any(classify(found).kind != "sine" for found in (record, as_measured))
-        level, text = resampling_text(sampled, resampled=resampled)
-        findings.append(Finding(level, text, file))
-        if not resampled:
-            record = as_measured
+        record, told = _with_fitting_times(record, sampled, time, measured)
+        findings.append(told)
     findings.extend(check_labels(record))
     return record, findings, columns.units
 
@@ -129,6 +124,19 @@ def _record(entry: Entry, file: str, sampled: Sampled, values: Mapping[str, Arra
         held_out=entry.held_out,
         uniform=sampled.uniform,
     )
+
+
+def _with_fitting_times(
+    record: Record, sampled: Sampled, time: Array, measured: Mapping[str, Array]
+) -> tuple[Record, Finding]:
+    """Return a record whose steps were not equal: a sine test at its times as measured.
+
+    Every verb has to see the sine test in those times too; else the record stays on its grid.
+    """
+    as_measured = record.sampled(time, measured)
+    resampled = any(classify(found).kind != "sine" for found in (record, as_measured))
+    level, text = resampling_text(sampled, resampled=resampled)
+    return record if resampled else as_measured, Finding(level, text, record.file)
 
 
 def _header_findings(columns: Columns, file: str) -> list[Finding]:
