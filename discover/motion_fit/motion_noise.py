@@ -54,11 +54,13 @@ class _Answer:
     @classmethod
     def of(cls, frequency: Array, stiffness: Array) -> Self:
         """Return what tests (N,) tell: frequencies, Hz, and stiffness, N/m."""
-        near = np.round(np.log(frequency) / _ALIKE)
-        each, inverse = np.unique(near, return_inverse=True)
-        count = np.bincount(inverse)
-        place = np.bincount(inverse, np.log(frequency)) / count
-        return cls(place[: each.size], np.bincount(inverse, np.log(stiffness)) / count)
+        place, level = np.log(frequency), np.log(stiffness)
+        groups, left = list[tuple[float, float]](), np.ones(place.size, dtype=bool)
+        while np.any(left):  # from the highest on, beyond which the rise of the last two goes on
+            alike = left & (place > place[left].max() - _ALIKE)
+            groups.insert(0, (float(place[alike].mean()), float(level[alike].mean())))
+            left &= ~alike
+        return cls(*np.array(groups).T)
 
     @property
     def slope(self) -> float:

@@ -79,3 +79,17 @@ def test_a_test_without_displacement_has_none():
     lone = Record("f.csv", time, np.cos(2 * np.pi * time), frequency=1.0, amplitude=0.01)
     (seen,) = observe_all([lone], 1)
     assert seen.windows[0].through is None
+
+
+@pytest.mark.parametrize("frequency", [11.0, 12.12, 13.4, 14.88])
+def test_two_tests_at_nearly_one_frequency_say_no_more_of_higher_ones_than_one(frequency):
+    """A little more force in one of them is none of the frequency's."""
+    rng = np.random.default_rng(5)
+    lower = [record(f, a, rng) for f, a in PLAN[:4]]
+    first, second = record(frequency, 0.001, rng), record(1.01 * frequency, 0.001, rng)
+    stronger = Record("stronger.csv", first.time, 1.2 * first.force, first.displacement)
+
+    def third_harmonic(*tests):
+        return np.sqrt(observe_all([*lower, *tests], 1)[-1].windows[0].through[3])
+
+    assert third_harmonic(stronger, second) == pytest.approx(third_harmonic(second), rel=0.3)
