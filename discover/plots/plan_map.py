@@ -116,13 +116,13 @@ def _findings(axes: Axes, tests: Sequence[PlannedTest]) -> None:
 
 
 def _numbers(axes: Axes, tests: Sequence[PlannedTest]) -> None:
-    """Write the noise under each sine test where it touches no other mark or number."""
+    """Write the noise under each sine test where it touches no other mark, number or label."""
     figure = axes.get_figure(root=True)
     if figure is None:
         return
     figure.draw_without_rendering()  # only then is it known where all stands
     marks = [_mark(axes, t) for t in tests]
-    written: list[Bbox] = []
+    written = [label.get_window_extent() for label in axes.texts]
     for index, test in enumerate(tests):
         others = [*marks[:index], *marks[index + 1 :]]
         on_another = any(_touch(marks[index], other) for other in others)

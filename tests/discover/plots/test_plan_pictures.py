@@ -71,6 +71,18 @@ def test_map_draws_dean_100_by_both_conventions_where_it_lies_among_the_tests():
     assert "De 100" not in words(plan_map(PlanFigureData(GRID)))
 
 
+def test_map_leaves_out_a_number_that_would_lie_on_the_label_of_a_dean_line():
+    plan = (*GRID, planned(0.1, 0.02, noise_percent=1.7))
+    assert "1.7 %" in words(plan_map(PlanFigureData(plan)))
+    at_test = 2.0 * math.pi * 0.1 * 0.02  # m/s
+    found = {
+        share: words(plan_map(PlanFigureData(plan, 100.0 / (share * at_test), None)))
+        for share in (0.5, 0.6, 0.7, 0.8, 0.9)
+    }
+    assert all("De 100" in labels for labels in found.values())
+    assert not all("1.7 %" in labels for labels in found.values())
+
+
 def test_dean_lines_lie_at_a_hundred():
     """Slope -1 through speed 100 / (De per speed), by the paper's formula written out."""
     device = Device.preset("device-12")
