@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path, PurePath
 
+from discover.readers.campaign import CAMPAIGN_FILE
 from discover.readers.draft_tables import record_files
 from discover.readers.entries import expanded
 from discover.readers.tables import read_entries
@@ -12,10 +13,8 @@ from discover.records import Finding
 from discover.words import counted, some_of
 from models.checks import printable
 
-_FILE = "campaign.toml"
 
-
-def left_out_files(path: str | Path) -> list[str]:
+def left_out_files(path: str | Path) -> list[PurePath]:
     """Return the files in a campaign's folder that may be records and are in no ``[[records]]``.
 
     Parameters
@@ -25,18 +24,23 @@ def left_out_files(path: str | Path) -> list[str]:
         out. What lies in a campaign further down is that one's.
     """
     given = Path(path)
-    folder = given.parent if given.name == _FILE else given
-    if not (folder / _FILE).is_file():
+    folder = given.parent if given.name == CAMPAIGN_FILE else given
+    if not (folder / CAMPAIGN_FILE).is_file():
         return []
-    table = tomllib.loads((folder / _FILE).read_text(encoding="utf-8-sig"))
-    entries = expanded(read_entries(table.get("records")), folder, where=_FILE)
+    table = tomllib.loads((folder / CAMPAIGN_FILE).read_text(encoding="utf-8-sig"))
+    entries = expanded(read_entries(table.get("records")), folder, where=CAMPAIGN_FILE)
     named = {PurePath(entry.file) for entry in entries}
-    others = [p.parent for p in folder.rglob(_FILE) if p.parent != folder]
     return [
         file
-        for file in record_files(folder)
-        if PurePath(file) not in named and not set((folder / file).parents) & set(others)
+        for file in map(PurePath, record_files(folder))
+        if file not in named and not _of_another(folder, file)
     ]
+
+
+def _of_another(folder: Path, file: PurePath) -> bool:
+    """Tell whether a file lies in a campaign further down."""
+    *below, _ = file.parents
+    return any((folder / parent / CAMPAIGN_FILE).is_file() for parent in below)
 
 
 def left_out_findings(path: str | Path) -> list[Finding]:
@@ -45,6 +49,6 @@ def left_out_findings(path: str | Path) -> list[Finding]:
     if not files:
         return []
     are = "is" if len(files) == 1 else "are"
-    listed = some_of([printable(file) for file in files])
+    listed = some_of([printable(file.as_posix()) for file in files])
     text = f"{counted(len(files), 'file')} of the folder {are} in no [[records]]: {listed}"
     return [Finding("note", text)]

@@ -37,8 +37,10 @@ class Evidence:
         """Take in a field; one that is no number tells nothing."""
         present = [mark for mark in _MARKS if mark in text]
         if not present and _WHOLE.fullmatch(text):
-            short = len(text.lstrip("+-")) <= _GROUPS
-            self.plain, self.long = self.plain or text * short, self.long or not short
+            if len(text.lstrip("+-")) > _GROUPS:
+                self.long = True
+            else:
+                self.plain = self.plain or text
         if not present or not _MARKED.fullmatch(text):
             return
         if len(present) == 2:
