@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from discover.readers.content import check_unpacked, content_error, optional_package
-from discover.readers.layout import Layout, Rows, find_tables
+from discover.readers.layout import Layout, Rows, above_text, find_tables
 from discover.readers.numerals import clock_seconds, value
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import Book, Source
@@ -115,6 +115,7 @@ def _text(cell: Any) -> str:
 
 def _source(cells: np.ndarray[Any, Any], layout: Layout, name: str, part: str) -> Source:
     span = cells[layout.first : layout.last]
+    above = [(row + 1, " ".join(map(_text, cells[row]))) for row in layout.above]
     kept = [i for i, row in enumerate(span) if any(_text(cell) for cell in row)]
 
     def place(row: int) -> str:
@@ -130,6 +131,7 @@ def _source(cells: np.ndarray[Any, Any], layout: Layout, name: str, part: str) -
         cell=lambda row, index: _text(span[kept[row], index]),
         units={**layout.units, **{i: "s" for i, cell in enumerate(span[0]) if _is_clock(cell)}},
         step=stated_step(layout.notes),
+        told=tuple(above_text(f"row {number}", text) for number, text in above),
     )  # fmt: skip
 
 

@@ -11,14 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from discover.readers.columns import split_header
+from discover.readers.cut_row import BEFORE, is_cut
+from discover.readers.leading_numbers import SHOWN_BY, leading_numbers
 from discover.readers.names import known_name
 from discover.readers.numerals import is_number
 from discover.readers.units import is_unit
+from models.checks import shown
 
 Mask = NDArray[np.bool_]
 
 _LONGEST_PREAMBLE = 2000  # rows before the samples that are looked at
 _LONGEST_LIST = 12  # rows of texts between the names and the samples
+_SHOWN = 60  # characters of a line
 _UNIT_ROW = re.compile(r"\b(units?|einheit(en)?|unités?)\b", re.IGNORECASE)
 _UNIT_MARKS = ("[", "(")
 
@@ -64,6 +68,8 @@ class Layout:
     """Names and values of the preamble."""
     cut: int | None = None
     """The row after the last sample, where it is one that was not written to its end."""
+    above: tuple[int, ...] = ()
+    """Rows of numbers above columns without names that are no samples."""
 
 
 def find_tables(rows: Rows) -> list[Layout]:
@@ -85,7 +91,7 @@ def find_tables(rows: Rows) -> list[Layout]:
         begin = last
     if tables:
         tables[-1] = _without_cut_row(rows, tables[-1])
-    return tables
+    return [_without_leading_numbers(rows, table) for table in tables]
 
 
 def _without_cut_row(rows: Rows, table: Layout) -> Layout:
@@ -93,17 +99,26 @@ def _without_cut_row(rows: Rows, table: Layout) -> Layout:
 
     A row that is not whole anywhere else is for reading to complain of.
     """
-    filled = np.flatnonzero(~rows.blank[table.first :])[-2:] + table.first
-    if filled.size < 2 or filled[1] >= table.last or rows.comment[filled].any():
+    filled = np.flatnonzero(~rows.blank[table.first :])[-BEFORE - 1 :] + table.first
+    if filled.size < 2 or filled[-1] >= table.last or rows.comment[filled[-2:]].any():
         return table
-    before, last = filled.tolist()
+    *before, last = filled.tolist()
     width = len(_trimmed(table.headers))
-    ended = len(rows.fields(last)) >= width
-    if ended and rows.unended:
-        ended = is_number(rows.fields(last)[width - 1])
-    if ended or len(_trimmed(rows.fields(before))) < width:
+    above = [_trimmed(rows.fields(row)) for row in before if not rows.comment[row]]
+    if not is_cut(rows.fields(last), above, width, unended=rows.unended):
         return table
     return replace(table, last=last, cut=last)
+
+
+def _without_leading_numbers(rows: Rows, table: Layout) -> Layout:
+    """Return a table without names that begins with its samples."""
+    if table.header is not None:
+        return table
+    filled = np.array(list(_filled(rows, table.first, table.last)))
+    shown = [_trimmed(rows.fields(row)) for row in filled[: 2 * SHOWN_BY]]
+    count = leading_numbers(shown, _trimmed(rows.fields(filled[-1])), filled.size)
+    above = tuple(filled[:count].tolist())
+    return replace(table, first=int(filled[count]), above=above) if count else table
 
 
 def _trimmed(fields: Sequence[str]) -> list[str]:
@@ -303,3 +318,14 @@ def _notes(preamble: Sequence[Sequence[str]]) -> Iterator[tuple[str, str]]:
             name, found, value = joined.partition(mark)
             if found:
                 yield name, value.strip()
+
+
+def above_text(place: str, text: str) -> str:
+    """Return what to tell of a row that stands above the samples, as wide as they are.
+
+    Examples
+    --------
+    >>> above_text("line 1", "500 2.5")
+    "line 1 is left out: '500 2.5' is no sample, as the time begins below it"
+    """
+    return f"{place} is left out: {shown(text[:_SHOWN])} is no sample, as the time begins below it"

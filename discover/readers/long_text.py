@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -11,14 +12,23 @@ import pyarrow.csv as pa_csv
 
 from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
+from discover.readers.cut_row import BEFORE, cut_text, is_cut
 from discover.readers.lvm import is_lvm, open_lvm
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import LONG, Book, Source, single
-from discover.readers.text_table import SPACES, fields_of, laid_out, open_text
+from discover.readers.text_table import (
+    SPACES,
+    fields_of,
+    laid_out,
+    left_out_lines,
+    open_text,
+    split_line,
+)
 from models.checks import Array
 
 _HEAD = 2**20  # bytes that show the layout
 _LEAST = 2  # bytes of a line: a digit and its end
+_TAIL = 2**16  # bytes that show the last line
 _PIECE = 2**20  # bytes; some tens of them are read ahead
 _WIDE_BOM = (b"\xff\xfe", b"\xfe\xff")
 
@@ -49,12 +59,14 @@ def open_long_text(path: Path, name: str) -> Book:
         return whole(path.read_bytes(), name)
     headers, decimal = fields_of(text, layout)
     names = [f"c{i}" for i in range(len(headers))]
+    end, cut = _end(path, text.delimiter, len(headers))
+    told = left_out_lines(text, layout) + (() if cut is None else (cut_text(lines, cut),))
 
     def pieces(indices: Sequence[int]) -> Iterator[list[Array]]:
         wanted = [names[i] for i in indices]
         try:
-            with pa_csv.open_csv(
-                path,
+            with _opened(path, end) as file, pa_csv.open_csv(
+                file,
                 read_options=pa_csv.ReadOptions(
                     column_names=names, skip_rows=layout.first, block_size=_PIECE,
                     use_threads=False,
@@ -78,10 +90,31 @@ def open_long_text(path: Path, name: str) -> Book:
     return single(
         Source(
             name, headers, read, lambda row: f"line {row + layout.first + 1}",
-            units=layout.units, step=stated_step(layout.notes), rows=lines - layout.first,
-            pieces=pieces,
+            units=layout.units, step=stated_step(layout.notes),
+            rows=lines - layout.first - (cut is not None), pieces=pieces, told=told,
         )
     )  # fmt: skip
+
+
+def _end(path: Path, delimiter: str, width: int) -> tuple[int, str | None]:
+    """Return where the samples end, and the last line where it was not written to its end."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        file.seek(max(0, size - _TAIL))
+        tail = file.read()
+    body = tail.rstrip(b"\r\n")
+    *before, last = (line.decode("latin-1").rstrip("\r") for line in body.split(b"\n")[1:])
+    fields = [split_line(line, delimiter) for line in before[-BEFORE:]]
+    whole = not is_cut(split_line(last, delimiter), fields, width, unended=tail == body)
+    return (size, None) if whole else (size - len(tail) + body.rindex(b"\n") + 1, last)
+
+
+def _opened(path: Path, end: int) -> Any:
+    """Open a file up to a place; nothing of it is held."""
+    if end == path.stat().st_size:
+        return pa.OSFile(str(path))
+    with pa.memory_map(str(path)) as mapped:
+        return pa.BufferReader(mapped.read_buffer(end))
 
 
 def _lines(path: Path) -> int:

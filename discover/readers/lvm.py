@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from discover.readers.content import content_error
+from discover.readers.cut_row import BEFORE, cut_text, is_cut
 from discover.readers.numerals import value
 from discover.readers.source import Book, Source, column_reader
 from models.checks import Array, InputError, shown
@@ -46,6 +47,7 @@ def open_lvm(data: bytes, name: str) -> Book:
     general, segments = _segments([line.split(separator) for line in lines])
     if not segments:
         raise content_error("a LabVIEW file with samples", "none", name)
+    cut = _cut_line(segments[-1], unended=not text.endswith(("\n", "\r")))
     many = len(segments) > 1
     decimal = (general.get("Decimal_Separator") or ["."])[0] or "."
     parts = []
@@ -53,7 +55,18 @@ def open_lvm(data: bytes, name: str) -> Book:
         part = f"segment {number}" if many else ""
         inside = f"{name} [{part}]" if many else name
         parts.append(_source(segment, general, decimal, inside, part))
+    if cut is not None:
+        parts[-1] = replace(parts[-1], told=(cut_text(cut, lines[cut - 1]),))
     return Book(name, tuple(parts))
+
+
+def _cut_line(segment: _Segment, *, unended: bool) -> int | None:
+    """Take out a segment's last row where it was not written to its end; return its line."""
+    width = sum(name != "Comment" for name in segment.names)
+    rows = [fields for _, fields in segment.rows[-BEFORE - 1 :]]
+    if len(rows) < 2 or not is_cut(rows[-1], rows[:-1], width, unended=unended):
+        return None
+    return segment.rows.pop()[0]
 
 
 @dataclass

@@ -16,7 +16,8 @@ import pyarrow.csv as pa_csv
 
 from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
-from discover.readers.layout import Layout, Rows, find_tables
+from discover.readers.cut_row import cut_text
+from discover.readers.layout import Layout, Rows, above_text, find_tables
 from discover.readers.line_kinds import line_kinds
 from discover.readers.notation import (
     Notation,
@@ -42,7 +43,6 @@ SPACES = " "
 """Stands for any run of blanks between columns."""
 _DELIMITERS = ("\t", ";", ",", SPACES)
 _MARKS = (b"#", b"%", b"//", b"'")
-_SHOWN = 60  # characters of a line
 _TRIED = 60  # lines that show what separates columns
 _BRACKETS = re.compile(r"\[[^\[\]]*\]|\([^()]*\)|\"[^\"]*\"")
 
@@ -68,7 +68,7 @@ class Text:
         mark = next((m.decode() for m in _MARKS if text.lstrip().encode().startswith(m)), "")
         if mark:
             text = text.lstrip().removeprefix(mark).strip()
-        return _split_line(text, self.delimiter)
+        return split_line(text, self.delimiter)
 
 
 def open_text(data: bytes, name: str) -> Book:
@@ -168,7 +168,7 @@ def _delimiter(text: Text, rows: np.ndarray, *, numbers: bool) -> str:
     if not numbers:
         lines = [_BRACKETS.sub("", line) for line in lines]
     for delimiter in _DELIMITERS if numbers else _DELIMITERS[:3]:
-        split = [_split_line(line, delimiter) for line in lines]
+        split = [split_line(line, delimiter) for line in lines]
         widths = [len(fields) for fields in split]
         usual = max(set(widths), key=widths.count, default=0)
         same = [f for f in split if len(f) == usual]
@@ -183,7 +183,8 @@ def _is_cell(field: str) -> bool:
     return is_number(field) or field.lower() in EMPTY
 
 
-def _split_line(line: str, delimiter: str) -> list[str]:
+def split_line(line: str, delimiter: str) -> list[str]:
+    """Return a line's fields."""
     if delimiter == SPACES:
         return _split_blanks(line)
     if '"' not in line:
@@ -274,19 +275,15 @@ def _source(text: Text, rows: Rows, layout: Layout, name: str, part: str) -> Sou
         step=stated_step(layout.notes),
         notes={i: thousands_note(headers[i], n) for i, n in written.items()
                if n.thousands and i < width},
-        told=_cut_row(text, layout),
+        told=left_out_lines(text, layout),
     )  # fmt: skip
 
 
-def _cut_row(text: Text, layout: Layout) -> tuple[str, ...]:
-    """Return what to tell of a last line that was not written to its end."""
-    if layout.cut is None:
-        return ()
-    found = text.line(layout.cut)[:_SHOWN]
-    return (
-        f"the last line, {layout.cut + 1}, is left out: {shown(found)} is no whole row, as where"
-        " the instrument was stopped; the rest is read",
-    )
+def left_out_lines(text: Text, layout: Layout) -> tuple[str, ...]:
+    """Return what to tell of lines that are left out, though they look like samples."""
+    above = [above_text(f"line {row + 1}", text.line(row)) for row in layout.above]
+    cut = () if layout.cut is None else (cut_text(layout.cut + 1, text.line(layout.cut)),)
+    return (*above, *cut)
 
 
 def fields_of(text: Text, layout: Layout) -> tuple[tuple[str, ...], str]:
