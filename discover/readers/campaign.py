@@ -11,13 +11,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from discover.readers.choice import chosen_sources
+from discover.readers.choice import chosen_sources, one_table
 from discover.readers.content import content_error
 from discover.readers.draft import Draft, draft_campaign
 from discover.readers.draft_tables import Answers
 from discover.readers.entries import Entry, expanded
 from discover.readers.formats import IN_PIECES, OPENERS, open_book
 from discover.readers.guess import listed
+from discover.readers.joined import joined
 from discover.readers.long_record import read_record_of_any_length
 from discover.readers.plausibility import implausible
 from discover.readers.source import Book
@@ -189,9 +190,12 @@ class _Reading:
     def take(self, entry: Entry) -> None:
         """Read an entry's records, or keep what is wrong with it."""
         try:
-            book = self._opened(entry.file)
             own = {**self.names, **entry.channel}
-            sources = chosen_sources(book, entry, own)
+            if entry.beside:
+                tables = [one_table(self._opened(file), entry, own) for file in entry.files]
+                sources = [joined(tables, entry.files, own)]
+            else:
+                sources = chosen_sources(self._opened(entry.file), entry, own)
         except InputError as error:
             self.errors.append(error)
             return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from fnmatch import fnmatchcase
 
 from discover.readers.columns import find_column
@@ -58,6 +59,30 @@ def chosen_sources(book: Book, entry: Entry, names: Mapping[str, str]) -> list[S
             found=shown(entry.part) + nearest(wanted, listed), where=entry.file,
         )  # fmt: skip
     return [_range_of(book, part, entry) for part in able]
+
+
+def one_table(book: Book, entry: Entry, names: Mapping[str, str]) -> Source:
+    """Return the table of a file that holds some channels of a test.
+
+    Raises
+    ------
+    InputError
+        As `chosen_sources`; or where the file has several tables and none is asked for.
+    """
+    if entry.part is None and book.whole is not None:
+        return book.whole
+    if entry.part is None and len(book.parts) > 1:
+        raise InputError(
+            book.key, expected="given in [[records]], as one of "
+            + _listed([part.part for part in book.parts]), found="none", where=book.name,
+        )  # fmt: skip
+    found = chosen_sources(book, replace(entry, file=book.name), names)
+    if len(found) > 1:
+        raise InputError(
+            book.key, expected="one table, in a list of the files of one test",
+            found=f"{len(found)} that {shown(entry.part)} fits", where=book.name,
+        )  # fmt: skip
+    return found[0]
 
 
 def has_record(source: Source, entry: Entry, names: Mapping[str, str]) -> bool:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from discover.readers.columns import QUANTITIES, find_column, split_header, stated_unit
+from discover.readers.draft_joined import LoneTable, joined_tables
 from discover.readers.entries import Entry
 from discover.readers.formats import OPENERS, open_file
 from discover.readers.guess import Guess, TableGuess, guess_table
@@ -54,6 +55,7 @@ def found_tables(
     found: list[tuple[Entry, Source, TableGuess]] = []
     left_out: list[tuple[str, str]] = []
     headers: list[str] = []
+    lone: list[LoneTable] = []
     for file in files:
         entry = Entry(file, step=_step(answers))
         try:
@@ -66,8 +68,18 @@ def found_tables(
         found += [(_named(entry, book, source), source, guess) for source, guess in parts]
         if not parts:
             left_out.append((file, lacking))
+            table = book.whole or book.parts[0]
+            if len(book.parts) == 1 or book.whole is not None:
+                lone.append(LoneTable(file, table, _guessed(table, answers)))
+    together, wrong = joined_tables(
+        lone, step=_step(answers), guessed=lambda source: _guessed(source, answers)
+    )
+    found = sorted([*found, *together], key=lambda table: files.index(table[0].file))
+    used = {file for entry, _, _ in together for file in entry.files}
+    headers += [h for _, source, _ in together for h in source.headers]
     _check_named(answers.columns, headers)
-    return found, left_out
+    told = [(f, str(wrong[f]) if f in wrong else why) for f, why in left_out if f not in used]
+    return found, told
 
 
 def _step(answers: Answers) -> float | None:

@@ -42,6 +42,13 @@ class Entry:
     """The span as written."""
     step: float | None = None
     """s, the sampling interval where the file states none."""
+    beside: tuple[str, ...] = ()
+    """Paths of further files of the same test, with the rest of its channels."""
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Return the paths of all files of the test."""
+        return self.file, *self.beside
 
     def label(self, part: str) -> str:
         """Return the record's name: its file, with what tells it from others of that file.
@@ -50,11 +57,14 @@ class Entry:
         --------
         >>> Entry("a.xlsx").label(""), Entry("a.xlsx", span_text="1 s : 2 s").label("Test 3")
         ('a.xlsx', 'a.xlsx [Test 3, 1 s : 2 s]')
+        >>> Entry("a_force.csv", beside=("a_stroke.csv",)).label("")
+        'a_force.csv + a_stroke.csv'
         """
         channels = self.channel.values() if self.channel_told else ()
         told = [part, *channels, self.cells, self.span_text]
         inside = ", ".join(text for text in told if text)
-        return f"{self.file} [{inside}]" if inside else self.file
+        files = " + ".join(self.files)
+        return f"{files} [{inside}]" if inside else files
 
 
 def expanded(entries: Sequence[Entry], folder: Path, *, where: str) -> Iterator[Entry]:
@@ -74,8 +84,12 @@ def expanded(entries: Sequence[Entry], folder: Path, *, where: str) -> Iterator[
     InputError
         Where a pattern leads out of the folder or fits nothing.
     """
-    named = {entry.file for entry in entries}
+    named = {file for entry in entries for file in entry.files}
     for entry in entries:
+        if entry.beside:
+            _check_names(entry, folder, where)
+            yield entry
+            continue
         if not any(mark in entry.file for mark in _GLOB) or _is_file(folder / entry.file):
             yield entry
             continue
@@ -100,6 +114,16 @@ def expanded(entries: Sequence[Entry], folder: Path, *, where: str) -> Iterator[
         for file in files:
             named.add(file)
             yield replace(entry, file=file)
+
+
+def _check_names(entry: Entry, folder: Path, where: str) -> None:
+    """Refuse a pattern among the files of one test: which belong together only names can tell."""
+    for file in entry.files:
+        if any(mark in file for mark in _GLOB) and not _is_file(folder / file):
+            raise InputError(
+                f"file {shown(file)}", expected="a name, in a list of the files of one test",
+                found="a pattern; write [[records]] for each test", where=where,
+            )  # fmt: skip
 
 
 def _is_file(path: Path) -> bool:

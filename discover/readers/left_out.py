@@ -29,7 +29,7 @@ def left_out_files(path: str | Path) -> list[PurePath]:
         return []
     table = tomllib.loads((folder / CAMPAIGN_FILE).read_text(encoding="utf-8-sig"))
     entries = expanded(read_entries(table.get("records")), folder, where=CAMPAIGN_FILE)
-    named = {PurePath(entry.file) for entry in entries}
+    named = {PurePath(file) for entry in entries for file in entry.files}
     return [
         file
         for file in map(PurePath, record_files(folder))

@@ -195,13 +195,11 @@ def read_entries(value: object) -> list[Entry]:
 
 def _samples(entry: Entry) -> tuple[str, str]:
     """Return what tells apart entries but for their channels."""
-    return entry.file, replace(entry, channel_told=False).label(str(entry.part or ""))
+    return " + ".join(entry.files), replace(entry, channel_told=False).label(str(entry.part or ""))
 
 
 def _entry(table: Mapping[str, Any], place: str) -> Entry:
-    file = table.get("file")
-    if not isinstance(file, str) or not file.strip():
-        raise InputError("file", expected="a file's name", found=shown(file), where=place)
+    file, *beside = _files(table.get("file"), place)
     held_out = table.get("held_out", False)
     if not isinstance(held_out, bool):
         raise InputError("held_out", expected="true or false", found=shown(held_out), where=place)
@@ -228,7 +226,21 @@ def _entry(table: Mapping[str, Any], place: str) -> Entry:
         span=span,
         span_text="" if cells else " ".join(str(table.get("range", "")).split()),
         step=None if rate is None else 1.0 / rate,
+        beside=tuple(beside),
     )
+
+
+def _files(value: object, place: str) -> list[str]:
+    """Return the file's name, or those of the files that hold the channels of one test."""
+    files: list[Any] = value if isinstance(value, list) and value else [value]
+    for file in files:
+        if not isinstance(file, str) or not file.strip():
+            expected = "a file's name, or a list of those that hold one test's channels"
+            raise InputError("file", expected=expected, found=shown(file), where=place)
+    if len(set(files)) < len(files):
+        twice = next(file for file in files if files.count(file) > 1)
+        raise InputError("file", expected="each once", found=f"{shown(twice)} again", where=place)
+    return files
 
 
 def _part(table: Mapping[str, Any], place: str) -> tuple[str, str | int | None]:

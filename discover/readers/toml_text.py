@@ -61,7 +61,9 @@ def campaign_text(
 
 
 def _entry_lines(entry: Entry) -> list[str]:
-    lines = ["[[records]]", f"file = {quoted(entry.file)}"]
+    files = [quoted(file) for file in entry.files]
+    listed = f"[{', '.join(files)}]" if entry.beside else files[0]
+    lines = ["[[records]]", f"file = {listed}"]
     if entry.part is not None:
         lines.append(f"{entry.key} = {quoted(str(entry.part))}")
     if entry.span_text:
