@@ -9,6 +9,7 @@ from fnmatch import fnmatchcase
 from discover.readers.columns import find_column
 from discover.readers.entries import Entry
 from discover.readers.source import Book, Source
+from discover.readers.stacked import stacked
 from models.checks import InputError, nearest, shown
 
 _NEEDED = ("time", "displacement", "force")
@@ -40,18 +41,20 @@ def chosen_sources(book: Book, entry: Entry, names: Mapping[str, str]) -> list[S
             f"key {entry.key!r}", expected=f"{book.key!r} for a file of this kind",
             found=shown(entry.part), where=entry.file,
         )  # fmt: skip
-    listed = [part.part for part in book.parts]
+    named = [part for part in book.parts if part.part == str(entry.part).strip()]
+    parts = named or _parts(book, entry, names)
+    listed = [part.part for part in parts]
     if isinstance(entry.part, int):
         if not 1 <= entry.part <= len(listed):
             raise InputError(
                 book.key, expected=f"from 1 to {len(listed)}", found=shown(entry.part),
                 where=entry.file,
             )  # fmt: skip
-        return [_range_of(book, book.parts[entry.part - 1], entry)]
+        return [_range_of(book, parts[entry.part - 1], entry)]
     wanted = entry.part.strip()
     if wanted in listed:
-        return [_range_of(book, book.parts[listed.index(wanted)], entry)]
-    fitting = [part for part in book.parts if fnmatchcase(part.part, wanted)]
+        return [_range_of(book, parts[listed.index(wanted)], entry)]
+    fitting = [part for part in parts if fnmatchcase(part.part, wanted)]
     able = [part for part in fitting if has_record(part, entry, names)] or fitting
     if not able:
         raise InputError(
@@ -59,6 +62,15 @@ def chosen_sources(book: Book, entry: Entry, names: Mapping[str, str]) -> list[S
             found=shown(entry.part) + nearest(wanted, listed), where=entry.file,
         )  # fmt: skip
     return [_range_of(book, part, entry) for part in able]
+
+
+def _parts(book: Book, entry: Entry, names: Mapping[str, str]) -> list[Source]:
+    """Return a file's tables, of one in which several tests are stacked these."""
+    timed = entry.step is not None
+    parts = [s for table in book.parts for s in stacked(table, names, timed=timed) or [table]]
+    if book.whole is None or any(has_record(part, entry, names) for part in parts):
+        return parts
+    return parts + stacked(book.whole, names, timed=timed)
 
 
 def one_table(book: Book, entry: Entry, names: Mapping[str, str]) -> Source:

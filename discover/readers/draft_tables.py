@@ -15,6 +15,7 @@ from discover.readers.guess import Guess, TableGuess, guess_table
 from discover.readers.long_record import first_part
 from discover.readers.names import name_score
 from discover.readers.source import Book, Source
+from discover.readers.stacked import stacked_by, stacked_time
 from discover.readers.units import measures
 from models.checks import InputError, nearest, printable, shown
 
@@ -93,17 +94,31 @@ def _tables(
     whole = [] if book.whole is None else [book.whole]
     first = ""
     for sources in (book.parts, whole):
-        able = []
+        able: list[tuple[Source, TableGuess]] = []
         for source in sources:
             guess = _guessed(source, answers)
-            lacks = [q for q in guess.lacks if not (q == "time" and stepped)]
+            tests = _stacked(source, guess, stepped=stepped)
+            guesses = [_guessed(test, answers) for test in tests] or [guess]
+            lacks = [q for q in guesses[0].lacks if not (q == "time" and stepped)]
             if not lacks:
-                able.append((source, guess))
+                able += zip(tests or [source], guesses, strict=True)
             elif not first:
                 first = _lacking(source, lacks, answers.columns)
         if able:
             return able, ""
     return [], first
+
+
+def _stacked(source: Source, guess: TableGuess, *, stepped: bool) -> list[Source]:
+    """Return the tests that stand below each other in a table; none where it is one test."""
+    if stepped or ("time" not in guess.columns and source.step is not None):
+        return stacked_by(source, None)
+    own = guess.columns.get("time")
+    time = stacked_time(source) if own is None else source.headers.index(own.header)
+    try:
+        return [] if time is None else stacked_by(source, time)
+    except InputError:  # which reading tells with its place
+        return []
 
 
 def _lacking(source: Source, lacks: Sequence[str], named: Mapping[str, str]) -> str:
@@ -207,7 +222,7 @@ def _has(source: Source, quantity: str, header: str) -> bool:
 
 def _named(entry: Entry, book: Book, source: Source) -> Entry:
     """Return the entry with the part of the file, where it has several."""
-    if len(book.parts) == 1 or not source.part:
+    if (len(book.parts) == 1 and source.part == book.parts[0].part) or not source.part:
         return entry
     return replace(entry, key=book.key, part=source.part)
 

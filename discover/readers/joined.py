@@ -149,11 +149,12 @@ def _part(source: Source, names: Mapping[str, str]) -> _Part:
     if time is not None:
         (column,) = source.read([time])
         unit = stated_unit(source, time) or ""
-        times: Array = to_si(column, unit, "time") if measures(unit, "time") else column
-        return _Part(source, time, times, column.size)
+        seconds = to_si(column, unit, "time") if measures(unit, "time") else column
+        return _Part(source, time, np.asarray(seconds, dtype=np.float64), column.size)
     size = source.read([0])[0].size
-    made = None if source.step is None else source.start + source.step * np.arange(size)
-    return _Part(source, None, made, size)
+    if source.step is None:
+        return _Part(source, None, None, size)
+    return _Part(source, None, source.start + source.step * np.arange(float(size)), size)
 
 
 def _agreed(parts: Sequence[_Part], files: Sequence[str]) -> int:

@@ -245,7 +245,10 @@ def _remedy(time: Array, bad: Indices) -> str:
             " or --sampling-rate to `inerter init`"
         )
     if bad.size < steps.size and (time[bad + 1] <= time[0]).all():
-        return "it begins again, as of several tests in one table: put each in a file of its own"
+        return (
+            'it begins again, as of several tests in one table: `group = "*"` in [[records]], of a'
+            " workbook `sheet`, makes a record of each"
+        )
     return "mend the file, or take the part before or after by `range` in [[records]]"
 
 

@@ -273,10 +273,6 @@ def test_a_counter_of_samples_is_no_time(here: Path, capsys: pytest.CaptureFixtu
          "Load (lbs) has the unit 'lbs': if it is the force, --column 'force=Load (lbs)'"),
         ("Time [s],LVDT [mm],Load [kN]", np.floor(TIME),
          "many samples share one time, which is too coarse: give `sampling_rate`"),
-        ("Time [s],LVDT [mm],Load [kN]", TIME % 1.5,
-         "line 602: time must be strictly increasing, got 0 s after 1.4975 s: it falls (3 such"
-         " places); it begins again, as of several tests in one table"),
-        ("t_s,x_mm,F_N", TIME % 1.5, "it begins again, as of several tests in one table"),
     ],
 )  # fmt: skip
 def test_what_a_file_lacks_comes_with_what_to_do(
