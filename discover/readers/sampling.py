@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d
+from scipy.ndimage import median_filter
 
 from discover.readers.fastest_motion import fastest_motion
 from discover.records import EVEN, GAP, on_grid
@@ -21,7 +21,8 @@ _STRONG = 0.2  # of the step, root mean square: above it resampling costs accura
 _ENOUGH = 20.0  # samples a cycle of the fastest motion, beyond which a grid needs none
 _NEIGHBOURS = 51  # steps whose median is the usual step there
 _ANOTHER = 1.8  # times, from which the usual step has changed: jitter moves its median by less
-_AT_REST = 0.02  # of the stroke: what moves less over two steps before and after is at rest
+_AT_REST = 0.02  # of the stroke: what moves less is at rest
+_REST = 0.125  # of a cycle of the fastest motion, over which it has to move less
 _STEPS = (1e-12, 1e9)  # s: beyond them a square is no number
 
 
@@ -170,8 +171,9 @@ def resampling_text(sampled: Sampled, *, resampled: bool) -> tuple[str, str]:
         parts.append(f"the sampling changes within the record, from {low:.4g} to {high:.4g} s")
     if sampled.gaps and sampled.fastest:
         many = f"{sampled.gaps} gaps, the longest of" if sampled.gaps > 1 else "a gap of"
+        rests = "at rest or " if sampled.longest_gap > LONGEST_GAP / sampled.fastest else ""
         parts.append(
-            f"{many} {sampled.longest_gap:.4g} s, short beside its fastest motion"
+            f"{many} {sampled.longest_gap:.4g} s, {rests}short beside its fastest motion"
             f" ({sampled.fastest:.3g} Hz)"
         )
     text = "; ".join(parts)
@@ -258,9 +260,9 @@ def _check_gaps(
     steps = np.diff(time)
     longest = LONGEST_GAP / fastest
     # A logger may save little while nothing moves: there it loses nothing.
-    near = maximum_filter1d(displacement, 5) - minimum_filter1d(displacement, 5)
-    moving = np.maximum(near[1:], near[:-1]) > _AT_REST * np.ptp(displacement)
-    bad = np.flatnonzero((steps > longest) & moving)
+    long = np.flatnonzero(steps > longest)
+    rests = (_rests(time, displacement, int(row), _REST / fastest) for row in long)
+    bad = long[~np.fromiter(rests, dtype=bool, count=long.size)]
     if bad.size:
         row = int(bad[0]) + 1
         more = f" ({bad.size} such gaps)" if bad.size > 1 else ""
@@ -272,3 +274,14 @@ def _check_gaps(
             " there, or measure again",
             where=f"{where} {place(row)}",
         )
+
+
+def _rests(time: Array, displacement: Array, row: int, span: float) -> bool:
+    """Return whether the device rests over the step after a row: it is where it was, and either
+    before or after it nothing moves for a `span` (s).
+    """
+    first, last = np.searchsorted(time, [time[row] - span, time[row + 1] + span])
+    least = _AT_REST * float(np.ptp(displacement))
+    before, after = displacement[first : row + 1], displacement[row + 1 : last]
+    moved = abs(float(displacement[row + 1] - displacement[row]))
+    return moved <= least and min(np.ptp(before), np.ptp(after)) <= least

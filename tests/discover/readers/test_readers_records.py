@@ -201,6 +201,35 @@ def test_a_short_gap_is_bridged_and_a_long_one_loses_the_motion(tmp_path: Path) 
         _read(tmp_path, time, _three_tones(time), time)
 
 
+def _begin_again(time: np.ndarray) -> np.ndarray:
+    """A motion that is where it was after 2 s."""
+    return sum(a * np.sin(np.pi * n * time) for a, n in ((8.0, 3), (5.0, 2), (2.0, 1)))
+
+
+@pytest.mark.parametrize("rate", [200.0, 5000.0])
+def test_a_gap_amid_motion_is_refused_at_any_rate(tmp_path: Path, rate: float) -> None:
+    """At a high rate nothing moves far from sample to sample; the gap is lost all the same."""
+    time = np.arange(0.0, 10.0, 1.0 / rate)
+    time = time[(time < 3.03) | (time > 5.03)]
+    with pytest.raises(InputError, match=r"time must be without .* 2\.?\d* s from 3.0\d* s on"):
+        _read(tmp_path, time, _begin_again(time), time)
+
+
+def test_a_gap_while_nothing_moves_is_bridged_and_told_as_such(tmp_path: Path) -> None:
+    time = np.arange(0.0, 12.0, 0.001)
+    time = time[(time < 4.5) | (time > 7.5)]
+
+    def motion(t: np.ndarray) -> np.ndarray:
+        return _begin_again(np.clip(t, 0.0, 4.0)) + _begin_again(np.clip(t, 8.0, 12.0))
+
+    found = _read(tmp_path, time, motion(time), motion(time))
+    np.testing.assert_allclose(
+        found.records[0].displacement, 1e-3 * motion(found.records[0].time), atol=1e-6
+    )
+    (finding,) = found.findings
+    assert "a gap of 3.002 s, at rest or short beside its fastest motion" in finding.text
+
+
 def test_a_sine_test_with_samples_missing_is_fitted_as_measured(tmp_path: Path) -> None:
     time = np.delete(TIME, slice(100, 110))
     x = 10.0 * np.sin(2 * np.pi * 1.5 * time)
