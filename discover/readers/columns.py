@@ -257,7 +257,7 @@ def missing_column(source: Source, quantity: str, wanted: str, *, instead: str =
     short = [name for name in by_name if len(name) <= _LONGEST_NAME]
     close = difflib.get_close_matches(_plain(wanted)[:_LONGEST_NAME], short, n=1, cutoff=0.6)
     hint = f"; is it {by_name[close[0]]!r}? [columns] can say so" if close else ""
-    if source.headers[0] == "column 1":
+    if all(_PLACE.fullmatch(header) for header in source.headers):
         hint = f'; there is no header: say in [columns] which is which, {quantity} = "column 1"'
     return InputError(
         f"column {wanted!r}" + (f" for {quantity}" if wanted != quantity else ""),

@@ -5,13 +5,14 @@ from __future__ import annotations
 import datetime
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from discover.readers.content import check_unpacked, content_error, optional_package
 from discover.readers.layout import Layout, Rows, above_text, find_tables
+from discover.readers.notation import Notation, check_told, notations, thousands_note
 from discover.readers.numerals import clock_seconds, value
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import Book, Source
@@ -121,16 +122,21 @@ def _source(cells: np.ndarray[Any, Any], layout: Layout, name: str, part: str) -
     def place(row: int) -> str:
         return f"row {layout.first + kept[row] + 1}" if row < len(kept) else f"sample {row + 1}"
 
+    written = _written(span[kept])
+
     def read(indices: Sequence[int]) -> list[Array]:
-        return [
-            np.array([_number(span[row, i]) for row in kept], dtype=np.float64) for i in indices
-        ]
+        own = {i: written.get(i, Notation(".")) for i in indices}
+        for i, notation in own.items():
+            check_told(notation, layout.headers[i], name)
+        return [np.array([_number(span[row, i], own[i]) for row in kept]) for i in indices]
 
     return Source(
         name, layout.headers, read, place, part,
         cell=lambda row, index: _text(span[kept[row], index]),
         units={**layout.units, **{i: "s" for i, cell in enumerate(span[0]) if _is_clock(cell)}},
         step=stated_step(layout.notes),
+        notes={i: thousands_note(layout.headers[i], n) for i, n in written.items()
+               if n.thousands and i < len(layout.headers)},
         told=tuple(above_text(f"row {number}", text) for number, text in above),
     )  # fmt: skip
 
@@ -139,10 +145,15 @@ def _is_clock(cell: Any) -> bool:
     return not isinstance(cell, int | float) and clock_seconds(_text(cell)) is not None
 
 
-def _number(cell: Any) -> float:
+def _written(cells: np.ndarray[Any, Any]) -> Mapping[int, Notation]:
+    """Return how numbers are written in columns that hold them as text."""
+    texts = [[cell if isinstance(cell, str) else "" for cell in row] for row in cells]
+    return notations(texts) if any(map(any, texts)) else {}
+
+
+def _number(cell: Any, written: Notation) -> float:
     """Return a cell's number, NaN for what is none."""
     if isinstance(cell, int | float):
         return float(cell)
-    text = _text(cell)
-    found = value(text, "," if "," in text and "." not in text else ".")
+    found = value(_text(cell), written.decimal, written.thousands)
     return float("nan") if found is None else found

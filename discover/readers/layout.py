@@ -187,7 +187,8 @@ def _units(fields: Sequence[str], names: Sequence[str]) -> dict[int, str] | None
         above = sum(known_name(names[i]) for i in texts)
         if 2 * units < len(bare) or units < min(2, len(bare)) or above <= as_names:
             return None
-    return {i: text for i, text in plain.items() if text}
+    nameless = {i: f for i, f in enumerate(fields[: len(names)]) if not names[i] and is_unit(f)}
+    return {i: text for i, text in sorted({**nameless, **plain}.items()) if text}
 
 
 def _heading(rows: Rows, begin: int, first: int) -> tuple[int | None, dict[int, str], int]:
@@ -280,7 +281,7 @@ def _layout(
     if header is None:
         names = tuple(f"column {i + 1}" for i in range(width))
     else:
-        names = tuple(field.strip() for field in rows.fields(header))
+        names = _names(rows, begin, header, first)
     top = first if header is None else header
     preamble = [_trimmed(rows.fields(r)) for r in range(begin, top) if not rows.blank[r]]
     units = units or _listed_units(preamble, names)
@@ -291,6 +292,25 @@ def _layout(
     if held and {name for name in names[own:] if name} <= dict(held).keys():
         names = names[:own]  # what stands beyond is of the file, and has no samples
     return Layout(names, units, header, first, last, title[:80], (*_notes(preamble), *held))
+
+
+def _names(rows: Rows, begin: int, header: int, first: int) -> tuple[str, ...]:
+    """Return a header's names, for those that it leaves empty what stands above or the place.
+
+    Cells that are merged over two rows leave the lower one empty.
+    """
+    names = [field.strip() for field in rows.fields(header)]
+    samples = rows.fields(first)
+    near = header - 1
+    above = rows.fields(near) if near >= begin and not rows.blank[near] else []
+    if any(is_number(field) for field in above if field):
+        above = []  # values of the preamble
+    for i, name in enumerate(names):
+        if name or i >= len(samples) or not samples[i]:
+            continue
+        text = above[i].strip() if i < len(above) else ""
+        names[i] = text if text and text not in names else f"column {i + 1}"
+    return tuple(names)
 
 
 def _listed_units(preamble: Sequence[Sequence[str]], names: Sequence[str]) -> dict[int, str]:

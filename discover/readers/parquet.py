@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,8 @@ def open_parquet(data: bytes | Path, name: str) -> Book:
     """Open a Parquet file; its column names are the headers.
 
     Of a path the columns are read when they are asked for, whole or in pieces. Time stamps are
-    read as seconds since the first one, with the resolution that they have.
+    read as seconds since the first one, with the resolution that they have. A column's metadata
+    may state its ``unit``.
 
     Raises
     ------
@@ -37,7 +38,9 @@ def open_parquet(data: bytes | Path, name: str) -> Book:
         headers = tuple(str(h).strip() for h in schema.names)
     except (pa.ArrowException, OSError) as error:
         raise content_error("a Parquet file", error, name) from None
-    stamps = {i: "s" for i, kind in enumerate(schema.types) if _is_time(kind)}
+    stated = {i: _unit(schema.field(i).metadata or {}) for i in range(len(headers))}
+    units = {i: "s" if _is_time(schema.types[i]) else unit for i, unit in stated.items()}
+    known = {i: unit for i, unit in units.items() if unit}
 
     def read(indices: Sequence[int]) -> list[Array]:
         names = [schema.names[i] for i in indices]
@@ -66,7 +69,14 @@ def open_parquet(data: bytes | Path, name: str) -> Book:
         except (pa.ArrowException, OSError) as error:
             raise content_error("a whole Parquet file", error, name) from None
 
-    return single(Source(name, headers, read, units=stamps, rows=rows, pieces=pieces))
+    return single(Source(name, headers, read, units=known, rows=rows, pieces=pieces))
+
+
+def _unit(metadata: Mapping[bytes, bytes]) -> str:
+    """Return the unit that a column's metadata states, "" where they state none."""
+    named = {key.lower(): value for key, value in metadata.items()}
+    found = named.get(b"unit") or named.get(b"units") or b""
+    return found.decode("utf-8", "replace").strip()
 
 
 def _position(index: int, names: list[str], read: Sequence[str]) -> int:

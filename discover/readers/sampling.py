@@ -277,11 +277,12 @@ def _check_gaps(
 
 
 def _rests(time: Array, displacement: Array, row: int, span: float) -> bool:
-    """Return whether the device rests over the step after a row: it is where it was, and either
-    before or after it nothing moves for a `span` (s).
+    """Return whether the device rests over the step after a row.
+
+    It is where it was, and before or after the step nothing moves for a `span` (s).
     """
     first, last = np.searchsorted(time, [time[row] - span, time[row + 1] + span])
     least = _AT_REST * float(np.ptp(displacement))
     before, after = displacement[first : row + 1], displacement[row + 1 : last]
     moved = abs(float(displacement[row + 1] - displacement[row]))
-    return moved <= least and min(np.ptp(before), np.ptp(after)) <= least
+    return bool(moved <= least and min(np.ptp(before), np.ptp(after)) <= least)

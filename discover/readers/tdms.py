@@ -13,13 +13,14 @@ from discover.readers.sampling_note import stated_step
 from discover.readers.source import Book
 from discover.readers.tree import Leaf, tree_book
 
+_UNITS = ("unit_string", "NI_UnitDescription")
 _STEP, _START = "wf_increment", "wf_start_offset"
 
 
 def open_tdms(data: bytes, name: str) -> Book:
     """Open a TDMS file: its groups are tests, its channels columns.
 
-    Waveforms carry their own sampling interval, channels their unit (``unit_string``).
+    Waveforms carry their own sampling interval, channels their unit.
 
     Raises
     ------
@@ -57,7 +58,7 @@ def _leaf(group: str, channel: Any) -> Leaf:
     return Leaf(
         (group, channel.name),
         values,
-        unit=str(own.get("unit_string", "")).strip(),
+        unit=next((str(own[key]).strip() for key in _UNITS if own.get(key)), ""),
         step=step,
         start=float(own.get(_START, 0.0)) if step else 0.0,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,10 +18,13 @@ from discover.readers.source import (
     column_pieces,
     column_reader,
 )
-from models.checks import InputError
+from models.checks import Array, InputError
 
 _WIDEST = 64  # columns of a matrix that may be channels
+_SAME = 1e-9  # of a sampling interval, to which two of them are one
+_NEAR = 0.05  # of it, by which channels may begin apart
 _NESTED = (Mapping, list, np.ndarray)
+_Read = Callable[[Sequence[int]], list[Array]]
 
 
 @dataclass(frozen=True)
@@ -206,20 +209,49 @@ def _source(
     """Return some leaves as a table, a step stated beside them before one of their group."""
     headers = tuple(joint.join(leaf.path[len(below) :]) for leaf in leaves)
     waves = [leaf for leaf in leaves if leaf.step is not None]
-    if waves:
-        step = waves[0].step if all(w.step == waves[0].step for w in waves) else None
+    usual = _usual_wave(waves)
     named = [leaf.role for leaf in leaves]
     columns = [leaf.value for leaf in leaves]
     long = [c.size for c in columns if isinstance(c, LongVector)]
     return Source(
         name,
         headers,
-        column_reader(name, headers, columns),
+        _together(column_reader(name, headers, columns), name, leaves, usual),
         part=part,
         units={i: leaf.unit for i, leaf in enumerate(leaves) if leaf.unit},
         roles={role: named.index(role) for role in named if role and named.count(role) == 1},
-        step=step,
-        start=waves[0].start if waves else 0.0,
+        step=usual.step if usual else step,
+        start=usual.start if usual else 0.0,
         rows=max(long, default=None),
         pieces=column_pieces(name, headers, columns) if long else None,
     )
+
+
+def _usual_wave(waves: Sequence[Leaf]) -> Leaf | None:
+    """Return a channel of the sampling that most channels have, of the fastest such."""
+    if not waves:
+        return None
+    counts = Counter((wave.step, wave.start) for wave in waves)
+    return min(waves, key=lambda wave: (-counts[wave.step, wave.start], wave.step or 0.0))
+
+
+def _together(read: _Read, name: str, leaves: Sequence[Leaf], usual: Leaf | None) -> _Read:
+    """Return what reads columns, and refuses those that are not sampled as the usual one is."""
+
+    def checked(indices: Sequence[int]) -> list[Array]:
+        for leaf in (leaves[i] for i in indices):
+            if usual is None or usual.step is None or leaf.step is None:
+                continue
+            late = abs(leaf.start - usual.start) > _NEAR * usual.step
+            if late or abs(leaf.step - usual.step) > _SAME * usual.step:
+                raise InputError(
+                    "/".join(leaf.path),
+                    expected=f"sampled as {'/'.join(usual.path)} is, every {usual.step:.6g} s from"
+                    f" {usual.start:.6g} s on",
+                    found=f"every {leaf.step:.6g} s from {leaf.start:.6g} s on; save channels of"
+                    " several rates at one rate, and from one time on",
+                    where=name,
+                )
+        return read(indices)
+
+    return checked

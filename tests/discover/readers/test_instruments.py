@@ -9,13 +9,18 @@ from pathlib import Path
 
 import lvm_read
 import numpy as np
+import openpyxl
+import pyarrow as pa
+import pyarrow.parquet as parquet
 import pytest
+from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
 from discover.readers import read_campaign
 from discover.records import Campaign
 from models.checks import InputError
 from tests.discover.readers import instruments
+from tests.discover.readers.folder import rows
 from tests.discover.readers.instruments import LOAD, STROKE, TIME
 
 FORCE_AND_STROKE = '[columns]\nforce = "Dev1/ai0"\ndisplacement = "LVDT"\n'
@@ -103,8 +108,6 @@ def test_a_workbook_with_cover_preamble_and_unit_row(tmp_path: Path) -> None:
 
 
 def test_a_number_beside_the_row_of_units_is_no_sample(tmp_path: Path) -> None:
-    import openpyxl
-
     instruments.workbook(tmp_path / "a.xlsx")
     book = openpyxl.load_workbook(tmp_path / "a.xlsx")
     book["Test 1"]["G4"], book["Test 1"]["G5"] = "Peak force", 1.2
@@ -112,9 +115,93 @@ def test_a_number_beside_the_row_of_units_is_no_sample(tmp_path: Path) -> None:
     _check(_campaign(tmp_path, '[[records]]\nfile = "a.xlsx"\nsheet = "Test 1"\n'), 1.0)
 
 
-def test_a_wrong_cell_is_named(tmp_path: Path) -> None:
-    import openpyxl
+def test_a_header_whose_cells_are_merged_over_two_rows(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet["A1"], sheet["A2"], sheet["B2"] = "Damper 7", "Time", "Measured"
+    sheet["B3"], sheet["C3"] = "Displacement", "Force"
+    sheet["A4"], sheet["B4"], sheet["C4"] = "ms", "mm", "kN"
+    for cells in ("A1:C1", "A2:A3", "B2:C2"):
+        sheet.merge_cells(cells)
+    for row in zip(1e3 * TIME, STROKE, LOAD, strict=True):
+        sheet.append([float(value) for value in row])
+    book.save(tmp_path / "a.xlsx")
+    _check(_campaign(tmp_path, '[[records]]\nfile = "a.xlsx"\n'), 1.0)
 
+
+def test_a_column_without_a_name_is_named_by_its_place(tmp_path: Path) -> None:
+    table = rows(np.arange(TIME.size), TIME, STROKE, LOAD)
+    (tmp_path / "a.csv").write_text(",time [s],x [mm],force [kN]\n" + table)
+    named = '[columns]\ndisplacement = "x"\n'
+    _check(_campaign(tmp_path, named + '[[records]]\nfile = "a.csv"\n'), 1.0, rtol=1e-8)
+    with pytest.raises(InputError, match=r"got column 1, time \[s\], x \[mm\], force \[kN\]$"):
+        _campaign(tmp_path, '[[records]]\nfile = "a.csv"\n')
+
+
+@pytest.mark.parametrize("decimals", [0, 3])
+def test_numbers_as_text_in_a_sheet_keep_their_thousands(tmp_path: Path, decimals: int) -> None:
+    """1.030 N is a thousand newtons where another column parts decimals by a comma."""
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.append(["time [s]", "displacement [mm]", "force [N]"])
+    force = np.round(4e3 * LOAD, decimals)
+    for t, x, f in zip(TIME, STROKE, force, strict=True):
+        texts = (f"{t:.3f}", f"{x:.6f}", f"{f:_.{decimals}f}")
+        sheet.append([text.replace(".", ",").replace("_", ".") for text in texts])
+    book.save(tmp_path / "a.xlsx")
+    found = _campaign(tmp_path, '[[records]]\nfile = "a.xlsx"\n')
+    np.testing.assert_allclose(found.records[0].force, force, atol=1e-9)
+    np.testing.assert_allclose(found.records[0].displacement, 1e-3 * STROKE, atol=1e-9)
+    (finding,) = found.findings
+    assert finding.text.startswith("column 'force [N]' has thousands separators: '2.400")
+
+
+def test_texts_of_a_sheet_that_can_be_read_in_two_ways_are_refused(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    book.active.append(["time [s]", "displacement [mm]", "force [N]"])
+    for t, x, f in zip(TIME, STROKE, np.round(4e3 * LOAD), strict=True):
+        book.active.append([float(t), float(x), f"{f:_.0f}".replace("_", ".")])
+    book.save(tmp_path / "a.xlsx")
+    with pytest.raises(InputError, match=r"force \[N\] must be written so that thousands"):
+        _campaign(tmp_path, '[[records]]\nfile = "a.xlsx"\n')
+
+
+@pytest.mark.parametrize(("step", "start"), [(0.01, 0.0), (0.005, 0.2)])
+def test_channels_that_are_not_sampled_together_are_refused(
+    tmp_path: Path, step: float, start: float
+) -> None:
+    def wave(step: float, start: float) -> dict[str, float]:
+        return {"wf_increment": step, "wf_start_offset": start}
+
+    with TdmsWriter(str(tmp_path / "a.tdms")) as writer:
+        writer.write_segment(
+            [
+                ChannelObject("all", "force", LOAD, {"unit_string": "kN", **wave(0.005, 0.0)}),
+                ChannelObject("all", "pump", LOAD, wave(0.005, 0.0)),
+                ChannelObject("all", "displacement", STROKE, wave(step, start)),
+            ]
+        )
+    message = (
+        f"all/displacement must be sampled as all/force is, every 0.005 s from 0 s on, got every"
+        f" {step:g} s from {start:g} s on"
+    )
+    with pytest.raises(InputError, match=message):
+        _campaign(tmp_path, '[[records]]\nfile = "a.tdms"\n')
+
+
+def test_units_that_parquet_and_daqmx_keep_beside_a_channel(tmp_path: Path) -> None:
+    fields = (("time", "s", TIME), ("displacement", "mm", STROKE), ("force", "kN", LOAD))
+    schema = pa.schema([pa.field(n, pa.float64(), metadata={"unit": u}) for n, u, _ in fields])
+    parquet.write_table(pa.table([v for *_, v in fields], schema=schema), tmp_path / "a.parquet")
+    _check(_campaign(tmp_path, '[[records]]\nfile = "a.parquet"\n'), 1.0)
+    with TdmsWriter(str(tmp_path / "a.tdms")) as writer:
+        writer.write_segment(
+            [ChannelObject("all", n, v, {"NI_UnitDescription": u}) for n, u, v in fields]
+        )
+    _check(_campaign(tmp_path, '[[records]]\nfile = "a.tdms"\n'), 1.0)
+
+
+def test_a_wrong_cell_is_named(tmp_path: Path) -> None:
     instruments.workbook(tmp_path / "a.xlsx")
     book = openpyxl.load_workbook(tmp_path / "a.xlsx")
     book["Test 1"]["C9"] = "overload"
@@ -553,8 +640,6 @@ def test_a_range_leaves_out_cells_that_are_no_numbers(tmp_path: Path, cell: str)
 
 
 def test_tests_side_by_side_in_a_sheet_are_taken_by_their_cells(tmp_path: Path) -> None:
-    import openpyxl
-
     book = openpyxl.Workbook()
     header = ["time [s]", "displacement [mm]", "force [kN]"]
     book.active.append([*header, None, *header])
