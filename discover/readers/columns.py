@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -116,7 +116,8 @@ def _plain(name: str) -> str:
 def find_column(source: Source, quantity: str, wanted: str) -> int | None:
     """Return the index of the header that is meant; None where there is none.
 
-    A column is named by its place too, as ``column 2``.
+    A column is named by its place too, as ``column 2``. Of several that are the same throughout
+    the first one is taken.
 
     Raises
     ------
@@ -135,6 +136,8 @@ def find_column(source: Source, quantity: str, wanted: str) -> int | None:
     place = _PLACE.fullmatch(wanted)
     if not found and place is not None and 1 <= int(place[1]) <= len(source.headers):
         found = [int(place[1]) - 1]
+    if len(found) > 1 and _alike(source, found):
+        found = found[:1]
     if len(found) > 1:
         listed = ", ".join(repr(source.headers[i]) for i in found)
         if len({source.headers[i] for i in found}) == 1 and source.cell is not None:
@@ -144,6 +147,15 @@ def find_column(source: Source, quantity: str, wanted: str) -> int | None:
             )
         raise InputError(quantity, expected="one column", found=listed, where=source.name)
     return found[0] if found else None
+
+
+def _alike(source: Source, indices: Sequence[int]) -> bool:
+    """Return whether columns are the same throughout, as a time beside every channel is."""
+    try:
+        first, *others = source.read(indices)
+    except (InputError, ValueError):
+        return False
+    return all(np.array_equal(first, other, equal_nan=True) for other in others)
 
 
 def read_columns(
@@ -309,9 +321,7 @@ def _calibrations(
     return told
 
 
-def _check_finite(
-    source: Source, index: int, column: Array, inside: NDArray[np.bool_]
-) -> None:
+def _check_finite(source: Source, index: int, column: Array, inside: NDArray[np.bool_]) -> None:
     """Refuse a value inside the wanted span that is no finite number, as the file has it."""
     bad = np.flatnonzero(~(np.abs(column) < LARGEST) & inside)
     if not bad.size:

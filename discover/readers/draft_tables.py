@@ -7,13 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from discover.readers.columns import QUANTITIES, find_column, split_header, stated_unit
 from discover.readers.draft_joined import LoneTable, joined_tables
 from discover.readers.entries import Entry
 from discover.readers.formats import OPENERS, open_file
 from discover.readers.guess import Guess, TableGuess, guess_table
 from discover.readers.long_record import first_part
-from discover.readers.names import name_score
+from discover.readers.names import NAMED, name_score
 from discover.readers.source import Book, Source
 from discover.readers.stacked import stacked_by, stacked_time
 from discover.readers.units import measures
@@ -21,6 +23,7 @@ from models.checks import InputError, nearest, printable, shown
 
 _VOLTS = ("V", "mV", "volt", "volts", "Volt", "Volts")
 _EXAMPLES = {"time": "1 ms", "displacement": "5 mm", "force": "2 kN"}
+_WEIGHTS = {"kg": "kgf", "lb": "lbf", "lbs": "lbf"}
 _MOST_TOLD = 30  # headers
 NO_TIME = "no column for time among"
 """Begins what is told of a table that lacks nothing but time."""
@@ -129,11 +132,14 @@ def _lacking(source: Source, lacks: Sequence[str], named: Mapping[str, str]) -> 
     if foreign is not None:
         quantity, index = foreign
         header = printable(source.headers[index])
-        column, unit = (shlex.quote(f"{quantity}={v}") for v in (header, _EXAMPLES[quantity]))
+        stated = stated_unit(source, index) or ""
+        example = _WEIGHTS.get(stated, _EXAMPLES[quantity])
+        column, unit = (shlex.quote(f"{quantity}={v}") for v in (header, example))
         return text + (
-            f"; {header} has the unit {shown(stated_unit(source, index))}: if it is the"
+            f"; {header} has the unit {shown(stated)}: if it is the"
             f" {quantity}, --column {column} --unit {unit} say so, and what one of it is"
         )
+    text += _no_number(source)
     if tuple(lacks) == ("time",):
         return text + "; --sampling-rate '1 kHz' makes the times, or --column time=HEADER names it"
     if tuple(lacks) == ("displacement",):
@@ -142,6 +148,22 @@ def _lacking(source: Source, lacks: Sequence[str], named: Mapping[str, str]) -> 
             " integrate it in the file"
         )
     return text + f"; --column {lacks[0]}=HEADER names it"
+
+
+def _no_number(source: Source) -> str:
+    """Return which column of numbers could not be told by its values, and why, "" for none."""
+    for index, header in enumerate(source.headers):
+        named = any(name_score(split_header(header)[0], q) for q in NAMED)
+        try:
+            column = np.empty(0) if named else source.read([index])[0]
+        except InputError:
+            continue
+        bad = np.flatnonzero(~np.isfinite(column))
+        if 0 < bad.size < 0.5 * column.size:
+            row = int(bad[0])
+            text = source.cell(row, index) if source.cell else f"{column[row]:g}"
+            return f"; {printable(header)} has {shown(text)} in {source.place(row)}"
+    return ""
 
 
 def _foreign(

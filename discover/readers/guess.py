@@ -20,6 +20,10 @@ _NEAR = 0.05  # of a score, within which two columns are equally likely
 _FEWEST = 16  # samples, from which a guess is made by the values
 _SMALL_STROKE = 0.3  # below it metres, from it on millimetres: of what laboratories write
 _COARSE_STEP = 0.3  # from it on milliseconds
+_FINE_STEP, _LATE = (
+    1e-5,
+    1e4,
+)  # steps below the one, from beyond the other on, are of a date in days
 
 
 @dataclass(frozen=True)
@@ -190,7 +194,10 @@ def _guessed_unit(source: Source, index: int, quantity: str) -> str:
     if column is not None and quantity == "displacement":
         return "m" if 0.5 * np.ptp(column) < _SMALL_STROKE else "mm"
     if column is not None and quantity == "time":
-        return "s" if (column[-1] - column[0]) / (column.size - 1) < _COARSE_STEP else "ms"
+        step = (column[-1] - column[0]) / (column.size - 1)
+        if step < _FINE_STEP and column[0] > _LATE:
+            return "d"  # since 1900, as spreadsheets count
+        return "s" if step < _COARSE_STEP else "ms"
     return {"force": "N", "velocity": "m/s", "acceleration": "m/s^2", "temperature": "degC"}.get(
         quantity, "s" if quantity == "time" else "m"
     )

@@ -212,7 +212,7 @@ def _rounding(raw_time: Array) -> float:
     with np.errstate(over="ignore", under="ignore"):
         in_single = raw_time.astype(np.float32).astype(np.float64)
     if np.array_equal(in_single, raw_time):
-        single = 1.2e-7 * largest
+        single = 1.2e-7 * largest if 1.2e-7 * largest <= 2.0 * step else 0.0
     for digits in range(13):
         scaled = raw_time * 10.0**digits
         slack = 1e-6 + 4e-16 * largest * 10.0**digits
@@ -241,7 +241,7 @@ def _check_increasing(time: Array, where: str, place: Callable[[int], str]) -> N
 def _remedy(time: Array, bad: Indices) -> str:
     """Return what to do about time that does not increase."""
     steps = np.diff(time)
-    if (steps[bad] == 0.0).all() and 2 * bad.size > steps.size:
+    if (steps[bad] == 0.0).all() and 4 * bad.size > steps.size:
         return (
             "many samples share one time, which is too coarse: give `sampling_rate` in [[records]],"
             " or --sampling-rate to `inerter init`"

@@ -235,7 +235,8 @@ def _files(value: object, place: str) -> list[str]:
     files: list[Any] = value if isinstance(value, list) and value else [value]
     for file in files:
         if not isinstance(file, str) or not file.strip():
-            expected = "a file's name, or a list of those that hold one test's channels"
+            listed = ", or a list of those that hold one test's channels"
+            expected = "a file's name" + (listed if isinstance(value, list) else "")
             raise InputError("file", expected=expected, found=shown(file), where=place)
     if len(set(files)) < len(files):
         twice = next(file for file in files if files.count(file) > 1)

@@ -114,7 +114,7 @@ def _described(leaves: list[Leaf]) -> list[Leaf]:
     """Return the leaves with the units, and the names, that texts beside them state.
 
     A unit is the text ``units.force`` beside ``force``, or ``Unit`` beside the only vector of a
-    structure, whose ``Name`` then stands for it.
+    structure but its time, whose ``Name`` or ``label`` then stands for it.
     """
     texts = {
         tuple(part.lower() for part in leaf.path): leaf.value.strip()
@@ -123,17 +123,21 @@ def _described(leaves: list[Leaf]) -> list[Leaf]:
     }
     if not texts:
         return leaves
-    held = Counter(leaf.path[:-1] for leaf in leaves if _is_vector(leaf.value))
+    vectors = [leaf.path for leaf in leaves if _is_vector(leaf.value)]
+    held = Counter(path[:-1] for path in vectors)
+    timed = {path[:-1] for path in vectors if path[-1].lower() == "time"}
     result = []
     for leaf in leaves:
         *group, own = (part.lower() for part in leaf.path)
-        alone = held[leaf.path[:-1]] == 1 and _is_vector(leaf.value)
+        others = held[leaf.path[:-1]] - 1 - (leaf.path[:-1] in timed and own != "time")
+        alone = not others and _is_vector(leaf.value)
         path, unit = leaf.path, leaf.unit
         for word in ("unit", "units"):
             unit = unit or texts.get((*group, word, own), "")
             unit = unit or (texts.get((*group, word), "") if alone else "")
-        if alone and group and (*group, "name") in texts:
-            path = (*leaf.path[:-2], texts[*group, "name"])
+        named = texts.get((*group, "name")) or texts.get((*group, "label"))
+        if alone and group and named:
+            path = (*leaf.path[:-2], named)
         result.append(replace(leaf, path=path, unit=unit))
     return result
 

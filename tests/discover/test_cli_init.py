@@ -216,6 +216,48 @@ def test_a_unit_at_the_end_of_a_name_is_taken(
     np.testing.assert_allclose(record.step, TIME[1] - TIME[0], rtol=1e-6)
 
 
+def test_days_of_a_spreadsheet_are_told_by_their_size(here: Path) -> None:
+    """45292 is the first of January 2024, and a sample of 400 Hz is 2.9e-8 days."""
+    x, force = _test(2.0)
+    table = np.column_stack([45292.5 + TIME / 86400.0, 1e3 * x, force])
+    np.savetxt(here / "a.csv", table, delimiter=",", header="Time,x_mm,F_N", comments="")
+    assert main(["init", "."]) == 0
+    (record,) = read_campaign(here).records
+    assert record.step == pytest.approx(1.0 / 400.0, rel=1e-6)
+    np.testing.assert_allclose(record.force, force, rtol=1e-12)
+
+
+def test_a_time_beside_every_channel_is_one(here: Path) -> None:
+    x, force = _test(2.0)
+    for name, late in (("a.csv", 0.0), ("b.csv", 1e-3)):
+        table = np.column_stack([TIME, force, TIME + late, 1e3 * x])
+        header = "Time [s];Force [N];Time [s];LVDT [mm]"
+        np.savetxt(here / name, table, delimiter=";", header=header, comments="", fmt="%.12g")
+    assert main(["init", "a.csv"]) == 0
+    (record,) = read_campaign(here).records
+    np.testing.assert_allclose(record.displacement, x, atol=1e-12)
+    (here / "campaign.toml").write_text(
+        '[columns]\ndisplacement = "LVDT"\n[[records]]\nfile = "b.csv"\n'
+    )
+    with pytest.raises(
+        InputError, match=r"b.csv: time must be one column, got 'Time \[s\]', 'Time"
+    ):
+        read_campaign(here)
+
+
+@pytest.mark.parametrize("mark", ["-1.#IND", "#NV", "OVER", "-----", "NaN"])
+def test_a_column_without_a_name_that_has_no_number_somewhere_is_told(
+    here: Path, capsys: pytest.CaptureFixture[str], mark: str
+) -> None:
+    x, force = _test(2.0)
+    lines = [f"{t:.9g},{a:.9g},{b:.9g}" for t, a, b in zip(TIME, 1e3 * x, force, strict=True)]
+    lines[0] = lines[0].rpartition(",")[0] + "," + mark
+    (here / "a.txt").write_text("\n".join(lines) + "\n")
+    assert main(["init", "."]) == 2
+    told = f"among column 1, column 2, column 3; column 3 has '{mark}' in line 1;"
+    assert told in capsys.readouterr().err
+
+
 def test_columns_without_names_are_told_by_what_they_do(
     here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -270,7 +312,8 @@ def test_a_counter_of_samples_is_no_time(here: Path, capsys: pytest.CaptureFixtu
         ("Time [s],LVDT [mm],Kraft [kp]", TIME,
          "Kraft [kp] has the unit 'kp': if it is the force, --column 'force=Kraft [kp]'"),
         ("Time [s],LVDT [mm],Load (lbs)", TIME,
-         "Load (lbs) has the unit 'lbs': if it is the force, --column 'force=Load (lbs)'"),
+         "Load (lbs) has the unit 'lbs': if it is the force, --column 'force=Load (lbs)'"
+         " --unit force=lbf say so"),
         ("Time [s],LVDT [mm],Load [kN]", np.floor(TIME),
          "many samples share one time, which is too coarse: give `sampling_rate`"),
     ],

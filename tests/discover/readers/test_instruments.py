@@ -229,7 +229,15 @@ def test_matlab_structures_that_state_units_and_names(tmp_path: Path) -> None:
     desk = {"X": {"Name": "Time", "Unit": "s", "Data": TIME}, "Y": channels}
     units = {"time": "s", "displacement": "mm", "force": "kN"}
     plain = {"time": TIME, "displacement": STROKE, "force": LOAD, "units": units, "by": "us"}
-    for content in (desk, plain):
+    series = {
+        f"log{i}": {"Time": TIME, "Data": channels["Data"][i], "Name": channels["Name"][i],
+                    "Unit": channels["Unit"][i], "units": {"time": "s"}}
+        for i in (0, 1)
+    }  # fmt: skip
+    scope = np.zeros(2, dtype=[("values", "O"), ("unit", "O"), ("label", "O")])
+    scope[0], scope[1] = (STROKE, "mm", "Displacement"), (LOAD, "kN", "Force")
+    scoped = {"time": TIME, "signals": scope, "units": {"time": "s"}}
+    for content in (desk, plain, series, scoped):
         savemat(tmp_path / "a.mat", {"rec": content})
         _check(_campaign(tmp_path, '[[records]]\nfile = "a.mat"\n'), 1.0)
 

@@ -252,6 +252,19 @@ def test_single_precision_time_is_uniform(tmp_path: Path) -> None:
     assert np.ptp(np.diff(found.records[0].time)) < 1e-9
 
 
+@pytest.mark.parametrize("origin", [1e5, 8e8, 3.8e9])
+def test_single_precision_that_holds_no_clock_is_refused(tmp_path: Path, origin: float) -> None:
+    """Of seconds since 1904 or 2000 single precision keeps minutes, of a day's hundredths."""
+    clock = {"time": (COLUMNS["time"] + origin).astype(np.float32)}
+    toml = UNITS + '[[records]]\nfile = "a.npz"\n'
+    folder = campaign(tmp_path / "c", _npz(**{**COLUMNS, **clock}), toml=toml, file="a.npz")
+    with pytest.raises(InputError, match=r"row \d+: time .* share one time, which is too coarse"):
+        read_campaign(folder)
+    double = {"time": COLUMNS["time"] + origin}
+    campaign(folder, _npz(**{**COLUMNS, **double}), toml=toml, file="a.npz")
+    np.testing.assert_allclose(read_campaign(folder).records[0].step, 0.005, rtol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("suffix", "content", "message"),
     [
