@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
 
@@ -115,6 +115,9 @@ def has_record(source: Source, entry: Entry, names: Mapping[str, str]) -> bool:
 
 def _only_source(book: Book, entry: Entry, names: Mapping[str, str]) -> Source:
     if len(book.parts) == 1:
+        tests = _unseen_tests(book.parts[0], entry, names)
+        if tests:
+            raise _which(book, tests, entry)
         return book.parts[0]
     if book.whole is not None and has_record(book.whole, entry, names):
         return book.whole
@@ -123,9 +126,26 @@ def _only_source(book: Book, entry: Entry, names: Mapping[str, str]) -> Source:
         return able[0]
     if not able:
         return book.whole or book.parts[0]  # which says what it lacks
-    raise InputError(
+    raise _which(book, able, entry)
+
+
+def _unseen_tests(source: Source, entry: Entry, names: Mapping[str, str]) -> list[Source]:
+    """Return the tests of a table whose times, made of a rate, would run through all of them."""
+    if entry.span != (None, None):
+        return []
+    if entry.step is None:
+        if (
+            source.step is None
+            or find_column(source, "time", names.get("time", "time")) is not None
+        ):
+            return []
+    return stacked(source, names, timed=True)
+
+
+def _which(book: Book, parts: Sequence[Source], entry: Entry) -> InputError:
+    return InputError(
         book.key,
-        expected='given in [[records]], as one of ' + _listed([p.part for p in able])
+        expected="given in [[records]], as one of " + _listed([part.part for part in parts])
         + ', or as "*" for a record each',
         found="none",
         where=entry.file,

@@ -13,6 +13,7 @@ from discover.readers.numerals import value
 from discover.readers.source import Book, Source, column_reader
 from models.checks import Array, InputError, shown
 
+_UNEVEN = 0.5  # of a step, by which the next segment may begin off the grid
 _MARK = "***End_of_Header***"
 _TITLE = b"LabVIEW Measurement"
 
@@ -23,7 +24,7 @@ def is_lvm(data: bytes) -> bool:
 
 
 def open_lvm(data: bytes, name: str) -> Book:
-    """Open a LabVIEW measurement file: its segments are tests.
+    """Open a LabVIEW measurement file: its segments are tests, those that go on in time one.
 
     Notes
     -----
@@ -48,8 +49,10 @@ def open_lvm(data: bytes, name: str) -> Book:
     if not segments:
         raise content_error("a LabVIEW file with samples", "none", name)
     cut = _cut_line(segments[-1], unended=not text.endswith(("\n", "\r")))
-    many = len(segments) > 1
     decimal = (general.get("Decimal_Separator") or ["."])[0] or "."
+    if (general.get("X_Columns") or ["One"])[0] != "No":
+        segments = _gone_on(segments, decimal)
+    many = len(segments) > 1
     parts = []
     for number, segment in enumerate(segments, start=1):
         part = f"segment {number}" if many else ""
@@ -67,6 +70,27 @@ def _cut_line(segment: _Segment, *, unended: bool) -> int | None:
     if len(rows) < 2 or not is_cut(rows[-1], rows[:-1], width, unended=unended):
         return None
     return segment.rows.pop()[0]
+
+
+def _gone_on(segments: Sequence[_Segment], decimal: str) -> list[_Segment]:
+    """Return the segments, with those joined that go on in time."""
+    found: list[_Segment] = []
+    for segment in segments:
+        if found and _goes_on(found[-1], segment, decimal):
+            found[-1].rows += segment.rows
+        else:
+            found.append(segment)
+    return found
+
+
+def _goes_on(first: _Segment, second: _Segment, decimal: str) -> bool:
+    """Return whether a segment has the channels of the one before and begins a step after it."""
+    units = [segment.notes.get("Y_Unit_Label") for segment in (first, second)]
+    if first.names != second.names or units[0] != units[1] or len(first.rows) < 2:
+        return False
+    rows = (*first.rows[-2:], second.rows[0])
+    before, last, begin = (value(fields[0], decimal) or 0.0 for _, fields in rows)
+    return 0.0 < last - before and abs(begin - last - (last - before)) < _UNEVEN * (last - before)
 
 
 @dataclass

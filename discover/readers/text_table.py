@@ -43,6 +43,8 @@ SPACES = " "
 """Stands for any run of blanks between columns."""
 _DELIMITERS = ("\t", ";", ",", SPACES)
 _MARKS = (b"#", b"%", b"//", b"'")
+_FORTRAN = re.compile(rb"(\.\d{0,20})[Dd]([+-]\d\d)")  # the exponent of a double
+_SAMPLE = 2**16  # bytes in which it shows
 _TRIED = 60  # lines that show what separates columns
 _BRACKETS = re.compile(r"\[[^\[\]]*\]|\([^()]*\)|\"[^\"]*\"")
 
@@ -121,6 +123,8 @@ def laid_out(data: bytes, name: str) -> tuple[Text, Rows, list[Layout]]:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     if not data or data.isspace():
         raise content_error("a header line and samples", "an empty file", name)
+    if _FORTRAN.search(data[:_SAMPLE]):
+        data = _FORTRAN.sub(rb"\1E\2", data)  # of which lengths and places stay as they are
     if b"\0" in data[:4096]:
         raise content_error("text", "binary data", name)
     text, rows = _lines(data, name)

@@ -327,6 +327,21 @@ def test_labview_segments_are_tests_and_a_library_reads_the_same(tmp_path: Path)
         np.testing.assert_allclose(record.force, 1e3 * data[:, 2], rtol=1e-12, atol=1e-12)
 
 
+def test_labview_segments_that_go_on_in_time_are_one_test(tmp_path: Path) -> None:
+    """LabVIEW writes a segment each time that it appends to the file."""
+    head, rest = _lvm("One", 1.0).split("X_Value")
+    names, *samples = rest.splitlines(keepends=True)
+    begin = head[head.index("\t\nChannels") :]
+    parts = [samples[:400], samples[400:800], samples[800:]]
+    text = head.removesuffix(begin) + "".join(
+        begin + "X_Value" + names + "".join(part) for part in parts
+    )
+    (tmp_path / "a.lvm").write_text(text)
+    found = _campaign(tmp_path, NAMED + '[[records]]\nfile = "a.lvm"\n')
+    _check(found, 1.0, rtol=2e-4)
+    assert found.records[0].file == "a.lvm"
+
+
 def _table(
     header: str, *, sep: str, decimal: str = ".", end: str = "\n", timed: bool = True,
     before: str = "", more: str = "",

@@ -78,6 +78,16 @@ def test_text_that_means_the_same_reads_the_same(tmp_path: Path, content: str | 
     _check_values(campaign(tmp_path / "c", content))
 
 
+def test_exponents_of_fortran_s_doubles(tmp_path: Path) -> None:
+    lines = "".join(f"  {t:.8E}  {x:.8E} {f:.8E}\n" for t, x, f in zip(
+        TIME, DISPLACEMENT, FORCE, strict=True))  # fmt: skip
+    content = "% of test 2D-17\n  time displacement force\n" + lines.replace("E", "D")
+    toml = UNITS + '[[records]]\nfile = "a.dat"\n'
+    found = read_campaign(campaign(tmp_path / "c", content, toml=toml, file="a.dat"))
+    np.testing.assert_allclose(found.records[0].force, 1e3 * FORCE, rtol=1e-8, atol=1e-9)
+    np.testing.assert_allclose(found.records[0].displacement, 1e-3 * DISPLACEMENT, atol=1e-10)
+
+
 def test_tsv_and_txt(tmp_path: Path) -> None:
     for name in ("a.tsv", "a.TXT"):
         toml = f'[[records]]\nfile = "{name}"\n'

@@ -132,6 +132,18 @@ def test_without_a_group_the_error_says_what_to_do(tmp_path: Path) -> None:
         read_campaign(tmp_path)
 
 
+def test_times_of_a_rate_do_not_run_through_several_tests(tmp_path: Path) -> None:
+    write(tmp_path, table(times="none", count="Run"), "a.csv", "Sampling rate: 200 Hz\n")
+    toml = '[[records]]\nfile = "a.csv"\n'
+    for more in ("", 'sampling_rate = "200 Hz"\n'):
+        (tmp_path / "campaign.toml").write_text(toml + more)
+        with pytest.raises(InputError, match=r"group must be given .* 'Run 3', 'Run 4', 'Run"):
+            read_campaign(tmp_path)
+    (tmp_path / "campaign.toml").write_text(toml + 'range = ": 5.996 s"\n')
+    (record,) = read_campaign(tmp_path).records
+    np.testing.assert_allclose(record.force, 1e3 * LOAD, atol=1e-5)
+
+
 def test_a_bad_value_is_told_with_its_line(tmp_path: Path) -> None:
     write(tmp_path, table(), "a.csv")
     lines = (tmp_path / "a.csv").read_text().splitlines()
