@@ -109,6 +109,17 @@ def stated_unit(source: Source, index: int) -> str | None:
     return own
 
 
+def is_place(header: str) -> bool:
+    """Return whether a header is a column's place, as where the file names none.
+
+    Examples
+    --------
+    >>> is_place("column 2"), is_place("column A")
+    (True, False)
+    """
+    return _PLACE.fullmatch(header) is not None
+
+
 def _plain(name: str) -> str:
     return re.sub(r"[\s\-]+", "_", name.strip().lower())
 
@@ -269,7 +280,7 @@ def missing_column(source: Source, quantity: str, wanted: str, *, instead: str =
     short = [name for name in by_name if len(name) <= _LONGEST_NAME]
     close = difflib.get_close_matches(_plain(wanted)[:_LONGEST_NAME], short, n=1, cutoff=0.6)
     hint = f"; is it {by_name[close[0]]!r}? [columns] can say so" if close else ""
-    if all(_PLACE.fullmatch(header) for header in source.headers):
+    if all(map(is_place, source.headers)):
         hint = f'; there is no header: say in [columns] which is which, {quantity} = "column 1"'
     return InputError(
         f"column {wanted!r}" + (f" for {quantity}" if wanted != quantity else ""),

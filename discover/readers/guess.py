@@ -19,7 +19,8 @@ _NEEDED = ("time", "force", "displacement")
 _NEAR = 0.05  # of a score, within which two columns are equally likely
 _FEWEST = 16  # samples, from which a guess is made by the values
 _SMALL_STROKE = 0.3  # below it metres, from it on millimetres: of what laboratories write
-_COARSE_STEP = 0.3  # from it on milliseconds
+_COARSE_STEP = 0.3  # s: from it on a finer unit
+_TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _FINE_STEP, _LATE = (
     1e-5,
     1e4,
@@ -197,7 +198,7 @@ def _guessed_unit(source: Source, index: int, quantity: str) -> str:
         step = (column[-1] - column[0]) / (column.size - 1)
         if step < _FINE_STEP and column[0] > _LATE:
             return "d"  # since 1900, as spreadsheets count
-        return "s" if step < _COARSE_STEP else "ms"
+        return next((u for u, size in _TIME_UNITS.items() if size * step < _COARSE_STEP), "ns")
     return {"force": "N", "velocity": "m/s", "acceleration": "m/s^2", "temperature": "degC"}.get(
         quantity, "s" if quantity == "time" else "m"
     )

@@ -196,20 +196,39 @@ def _heading(rows: Rows, begin: int, first: int) -> tuple[int | None, dict[int, 
     width = len(_trimmed(rows.fields(first)))
     above = list(_filled(rows, begin, first))[::-1]
     marked = [row for row in range(begin, first) if rows.comment[row] and not rows.blank[row]]
+    damaged = list(takewhile(lambda row: _is_damaged(_trimmed(rows.fields(row)), width), above))
+    found = _header(rows, above[len(damaged) :], marked, width)
+    if found is not None:  # and rows that are damaged follow: they are for reading to complain of
+        return *found, damaged[-1] if damaged else first
+    found = _header(rows, above, marked, width) if damaged else None
+    if found is not None:
+        return *found, first
+    if above:  # likewise where rows of any kind follow the header
+        top = _trimmed(rows.fields(above[-1]))
+        follow = len(top) == width or all(_is_sample(rows, row) for row in above[:-1])
+        if follow and _is_header(top, width):
+            return above[-1], {}, above[-1] + 1
+    return None, {}, first
+
+
+def _header(
+    rows: Rows, above: Sequence[int], marked: Sequence[int], width: int
+) -> tuple[int, dict[int, str]] | None:
+    """Return the header's row and the units by column, by the rows above the samples, or None."""
     named = [row for row in above[:3] if sum(map(bool, _trimmed(rows.fields(row)))) > 1]
     found = (
         _named(rows, above[:2], width)
         or _named(rows, named[:2], width, whole=True)  # below which a lone word opens the samples
         or _named(rows, marked[::-1][:2], width, whole=True)
     )
-    if found is not None:
-        return *(found if found[1] else _stating_units(rows, above, found[0], width)), first
-    if above:  # rows that are damaged follow the header: they are for reading to complain of
-        top = _trimmed(rows.fields(above[-1]))
-        damaged = len(top) == width or all(_is_sample(rows, row) for row in above[:-1])
-        if damaged and _is_header(top, width):
-            return above[-1], {}, above[-1] + 1
-    return None, {}, first
+    if found is None or found[1]:
+        return found
+    return _stating_units(rows, above, found[0], width)
+
+
+def _is_damaged(fields: Sequence[str], width: int) -> bool:
+    """Return whether a row is as long as a sample and begins as one, but is none."""
+    return len(fields) == width > 1 and is_number(fields[0])
 
 
 def _stating_units(

@@ -17,7 +17,7 @@ _GROUPED = re.compile(
 )  # with thousands separators
 _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d?)-(\d\d?)[ T]|(\d\d?)[./](\d\d?)[./](\d{4}) )?"
-    r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9}|:\d{3})?)(?:Z|\s?([AaPp])\.?[Mm]\.?)?"
+    r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9}|:\d{3})?)(?:Z|[+-]\d\d:?\d\d|\s?([AaPp])\.?[Mm]\.?)?"
 )
 _CLOCK_FORM = re.compile(
     r"(?:[ymd./-]+[ t])?h{1,2}:[mn]{1,2}:s{1,2}(?:[.,:]?[0fsmuz]{1,9})?(?: ?(?:tt|am/pm))?"
@@ -68,6 +68,8 @@ def is_number(field: str) -> bool:
 
 def clock_seconds(text: str) -> float | None:
     """Return the seconds since midnight, or since 2000 where there is a date; None of other text.
+
+    The clock is a local one: an offset from universal time, as ``+01:00``, is passed over.
 
     Examples
     --------

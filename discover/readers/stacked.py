@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from discover.readers.columns import find_column, split_header
+from discover.readers.columns import find_column, is_place, split_header
 from discover.readers.sampling import FEWEST_SAMPLES
 from discover.readers.source import Source
 from models.checks import Array, InputError
@@ -82,8 +82,10 @@ def stacked_by(source: Source, time: int | None) -> list[Source]:
 
 
 def stacked_time(source: Source) -> int | None:
-    """Return the only column that rises evenly but for where it begins again, None for none."""
-    found = []
+    """Return which of columns without names rises evenly but for where it begins again, or None."""
+    found: list[int] = []
+    if not all(is_place(header) for header in source.headers):
+        return None
     for index in range(len(source.headers)):
         try:
             (column,) = source.read([index])

@@ -178,7 +178,7 @@ def _delimiter(text: Text, rows: np.ndarray, *, numbers: bool) -> str:
         same = [f for f in split if len(f) == usual]
         if usual < 2 or (numbers and len(same) < 0.8 * len(split)):
             continue
-        if not numbers or all(_is_cell(f) for fields in same for f in fields):
+        if not numbers or sum(all(map(_is_cell, fields)) for fields in same) >= 0.8 * len(same):
             return delimiter
     return ","
 

@@ -227,6 +227,31 @@ def test_days_of_a_spreadsheet_are_told_by_their_size(here: Path) -> None:
     np.testing.assert_allclose(record.force, force, rtol=1e-12)
 
 
+@pytest.mark.parametrize(("unit", "size"), [("s", 1.0), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
+@pytest.mark.parametrize("origin", [0.0, 1.7e9])
+def test_the_unit_of_a_counter_s_time_is_told_by_its_step(
+    here: Path, unit: str, size: float, origin: float
+) -> None:
+    x, force = _test(2.0)
+    counts = np.round(size * (TIME + origin), 4 if unit == "s" else 0)
+    table = zip(counts, 1e3 * x, force, strict=True)
+    lines = "".join(f"{t:.4f},{a:.9g},{b:.9g}\n" for t, a, b in table)
+    (here / "a.csv").write_text("timestamp,x_mm,F_N\n" + lines)
+    assert main(["init", "."]) == 0
+    assert f'time = "{unit}"  # guessed' in (here / "campaign.toml").read_text()
+
+
+def test_seconds_and_nanoseconds_in_columns_of_their_own_are_no_time(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    x, force = _test(2.0)
+    table = np.column_stack([TIME // 1.0, 1e9 * (TIME % 1.0), 1e3 * x, force])
+    header = "stamp.secs,stamp.nsecs,x_mm,F_N"
+    np.savetxt(here / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    assert main(["init", "."]) == 2
+    assert "no column for time among stamp.secs, stamp.nsecs" in capsys.readouterr().err
+
+
 def test_a_time_beside_every_channel_is_one(here: Path) -> None:
     x, force = _test(2.0)
     for name, late in (("a.csv", 0.0), ("b.csv", 1e-3)):

@@ -583,10 +583,11 @@ def test_times_of_day_count_in_seconds(tmp_path: Path) -> None:
     ("first", "form"),
     [
         ("2026-05-03 23:59:58", "%H:%M:%S.%f"),
+        ("2026-05-03 23:59:58", "%Y-%m-%d %H:%M:%S.%f+02:00"),
         ("2026-05-03 11:59:58", "%m/%d/%Y %I:%M:%S.%f %p"),
         ("2026-05-03 23:59:58", "%I:%M:%S.%f %p"),
     ],
-    ids=["past midnight", "past noon", "past midnight, twelve hours"],
+    ids=["past midnight", "with an offset", "past noon", "past midnight, twelve hours"],
 )
 def test_a_clock_that_passes_noon_or_midnight_goes_on(
     tmp_path: Path, first: str, form: str

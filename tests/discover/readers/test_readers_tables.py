@@ -78,6 +78,30 @@ def test_text_that_means_the_same_reads_the_same(tmp_path: Path, content: str | 
     _check_values(campaign(tmp_path / "c", content))
 
 
+@pytest.mark.parametrize("mark", ["-----", "OVER", "-1.#IND", "#NV", "---.--"])
+@pytest.mark.parametrize("count", [1, 2, 12])
+@pytest.mark.parametrize(
+    ("head", "sep"),
+    [
+        ("time;displacement;force\ns;mm;kN\n", ";"),
+        ("by Meier\n\ntime\tdisplacement\tforce\n(s)\t(mm)\t(kN)\n", "\t"),
+        (HEADER + "\n", ","),
+        ("# by Meier\n# time displacement force\n", " "),
+    ],
+)
+def test_first_samples_that_are_no_numbers_are_told_and_none_is_left_out(
+    tmp_path: Path, head: str, sep: str, count: int, mark: str
+) -> None:
+    lines = rows(TIME, DISPLACEMENT, FORCE, sep=sep).splitlines()
+    for index in range(count):
+        lines[index] = sep.join([lines[index].split(sep)[0], mark, mark])
+    content = head + "\n".join(lines) + "\n"
+    line = head.count("\n") + 1
+    message = rf"a.csv line {line}: displacement.* number, got '{mark}'"
+    with pytest.raises(InputError, match=message):
+        read_campaign(campaign(tmp_path / "c", content))
+
+
 def test_exponents_of_fortran_s_doubles(tmp_path: Path) -> None:
     lines = "".join(f"  {t:.8E}  {x:.8E} {f:.8E}\n" for t, x, f in zip(
         TIME, DISPLACEMENT, FORCE, strict=True))  # fmt: skip
