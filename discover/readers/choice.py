@@ -67,10 +67,18 @@ def chosen_sources(book: Book, entry: Entry, names: Mapping[str, str]) -> list[S
 def _parts(book: Book, entry: Entry, names: Mapping[str, str]) -> list[Source]:
     """Return a file's tables, of one in which several tests are stacked these."""
     timed = entry.step is not None
-    parts = [s for table in book.parts for s in stacked(table, names, timed=timed) or [table]]
+    parts = [s for table in book.parts for s in _tests(book, table, names, timed=timed) or [table]]
     if book.whole is None or any(has_record(part, entry, names) for part in parts):
         return parts
-    return parts + stacked(book.whole, names, timed=timed)
+    return parts + _tests(book, book.whole, names, timed=timed)
+
+
+def _tests(book: Book, table: Source, names: Mapping[str, str], *, timed: bool) -> list[Source]:
+    """Return the tests that are stacked in a table of a file."""
+    asked = (table.name, names.get("time", "time"), timed)
+    if asked not in book.stacks:
+        book.stacks[asked] = stacked(table, names, timed=timed)
+    return book.stacks[asked]
 
 
 def one_table(book: Book, entry: Entry, names: Mapping[str, str]) -> Source:

@@ -49,10 +49,11 @@ def open_parquet(data: bytes | Path, name: str) -> Book:
                 table = file.read(columns=names)
         except (pa.ArrowException, OSError) as error:
             raise content_error("a whole Parquet file", error, name) from None
-        # Columns of one name come together, in the file's order.
-        kept = [i for i, own in enumerate(schema.names) if own in names]
-        columns = {i: table.column(kept.index(i)) for i in indices}
-        return [_numbers(c, headers[i], name, _first(c)) for i, c in columns.items()]
+        places = [_position(i, schema.names, table.column_names) for i in indices]
+        columns = [table.column(place) for place in places]
+        return [
+            _numbers(c, headers[i], name, _first(c)) for i, c in zip(indices, columns, strict=True)
+        ]
 
     def pieces(indices: Sequence[int]) -> Iterator[list[Array]]:
         names = [schema.names[i] for i in indices]

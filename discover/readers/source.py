@@ -80,6 +80,8 @@ class Book:
     """All columns of a file whose groups are parts of one tree; None where tables are apart."""
     cells: Callable[[str, str], Source] | None = None
     """The table in a part's range of cells, of a workbook."""
+    stacks: dict[tuple[str, str, bool], list[Source]] = field(default_factory=dict)
+    """Tests that stand below each other in its tables, kept once they were looked for."""
 
 
 def single(source: Source) -> Book:

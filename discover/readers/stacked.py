@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -24,6 +24,7 @@ _PIECE = re.compile(
     r"[\s_]*(id|no|nr|num|number|nummer|count|index)?[.#]?",
     re.IGNORECASE,
 )
+_Read = Callable[[Sequence[int]], list[Array]]
 _UNEVEN = 1.5  # times the usual step, up to which time goes on
 
 
@@ -67,6 +68,7 @@ def stacked_by(source: Source, time: int | None) -> list[Source]:
     InputError
         Where that column can't be read.
     """
+    source = replace(source, read=_kept(source.read))
     times = None if time is None else source.read([time])[0]
     counts = _counts(source, time)
     begins = _begins(times, counts)
@@ -96,6 +98,20 @@ def stacked_time(source: Source) -> int | None:
         if len(ends) > 2 and all(s.size and _even(s) for s in steps):
             found.append(index)
     return found[0] if len(found) == 1 else None
+
+
+def _kept(read: _Read) -> _Read:
+    """Return what reads each column once, since every test has a part of it."""
+    columns: dict[int, Array] = {}
+
+    def reading(indices: Sequence[int]) -> list[Array]:
+        new = [index for index in indices if index not in columns]
+        if new:
+            known = list(columns)[:1]  # beside which a column of another length is refused
+            columns.update(zip(new, read([*known, *new])[len(known) :], strict=True))
+        return [columns[index] for index in indices]
+
+    return reading
 
 
 def _even(steps: Array) -> bool:
@@ -158,7 +174,7 @@ def _rows(source: Source, first: int, last: int, label: str) -> Source:
     return replace(
         source,
         name=f"{source.name.removesuffix(f' [{source.part}]')} [{part}]",
-        read=lambda indices: [column[first:last] for column in source.read(indices)],
+        read=lambda indices: [column[first:last].copy() for column in source.read(indices)],
         place=lambda row: source.place(row + first),
         cell=None if cell is None else lambda row, index: cell(row + first, index),
         part=part, rows=None, pieces=None,

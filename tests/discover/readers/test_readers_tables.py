@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 import os
 from pathlib import Path
 
@@ -276,6 +277,19 @@ def test_binary_files_read_the_same(tmp_path: Path, suffix: str, content: bytes,
     name = f"a.{suffix}"
     whole = toml + f'[[records]]\nfile = "{name}"\n'
     _check_values(campaign(tmp_path / "c", content, toml=whole, file=name))
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations(DRESSED)))
+@pytest.mark.parametrize("suffix", ["parquet", "csv", "npz"])
+def test_columns_may_stand_in_any_order(
+    tmp_path: Path, suffix: str, order: tuple[str, ...]
+) -> None:
+    columns = {name: DRESSED[name] for name in order}
+    content: str | bytes = pd.DataFrame(columns).to_csv(index=False)
+    if suffix != "csv":
+        content = _parquet(columns) if suffix == "parquet" else _npz(**columns)
+    toml = f'[[records]]\nfile = "a.{suffix}"\n'
+    _check_values(campaign(tmp_path / "c", content, toml=toml, file=f"a.{suffix}"))
 
 
 def test_single_precision_time_is_uniform(tmp_path: Path) -> None:

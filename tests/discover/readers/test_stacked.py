@@ -144,6 +144,14 @@ def test_times_of_a_rate_do_not_run_through_several_tests(tmp_path: Path) -> Non
     np.testing.assert_allclose(record.force, 1e3 * LOAD, atol=1e-5)
 
 
+def test_columns_of_another_length_are_refused(tmp_path: Path) -> None:
+    columns = {key.split(" [")[0]: values for key, values in table().items()}
+    savemat(tmp_path / "a.mat", {**columns, "force": columns["force"][:-1]})
+    (tmp_path / "campaign.toml").write_text('[[records]]\nfile = "a.mat"\ngroup = "test 3"\n')
+    with pytest.raises(InputError, match=r"force must be of the length of time \(3600\), got 3599"):
+        read_campaign(tmp_path)
+
+
 def test_a_bad_value_is_told_with_its_line(tmp_path: Path) -> None:
     write(tmp_path, table(), "a.csv")
     lines = (tmp_path / "a.csv").read_text().splitlines()
