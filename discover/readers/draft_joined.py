@@ -12,6 +12,7 @@ from discover.readers.joined import joined, name_words, named_quantity
 from discover.readers.source import Source
 from models.checks import InputError
 
+_CHANNEL = ("ch", "chan", "channel", "kanal", "voie", "ai", "input", "signal", "sensor", "track")
 _NEEDED = {"force", "displacement"}
 
 
@@ -35,7 +36,8 @@ def joined_tables(
 ) -> tuple[list[tuple[Entry, Source, TableGuess]], dict[str, InputError]]:
     """Return the tests that several files make, and what is wrong with files that would be one.
 
-    Names that differ in one word, as ``run1_force`` and ``run1_stroke``, belong together where
+    Names that differ in one word, as ``run1_force`` and ``run1_stroke``, or in the number of a
+    channel, as ``run1_ch1`` and ``run1_ch2``, belong together where
     each file has another quantity, by its headers or else by that word, and all of them make a
     record.
 
@@ -53,6 +55,8 @@ def joined_tables(
         words = name_words(table.file)
         end = PurePath(table.file).suffix.lower()
         for at, word in enumerate(words):
+            if word.isdigit() and not (at and words[at - 1].lower() in _CHANNEL):
+                continue  # which may be the test's number
             rest = tuple(w.lower() for w in words[:at]), tuple(w.lower() for w in words[at + 1 :])
             groups.setdefault((end, *rest), []).append((table, word))
     found: dict[tuple[str, ...], tuple[Entry, Source, TableGuess]] = {}

@@ -14,6 +14,7 @@ from discover.readers.source import Book, Source, column_reader
 from models.checks import Array, InputError, shown
 
 _UNEVEN = 0.5  # of a step, by which the next segment may begin off the grid
+_NEAR = 0.05  # of a step, to which times of one sample agree
 _MARK = "***End_of_Header***"
 _TITLE = b"LabVIEW Measurement"
 
@@ -143,6 +144,7 @@ def _source(
     timed = style != "No"
     wanted = ([0] if timed else []) + channels
     columns = list(_columns(segment, wanted, decimal, name))
+    _check_clocks(segment, names, columns, decimal, name)
     headers = tuple(names[i] for i in wanted)
     # Values in a segment's header stand in the columns of the channels, the first one left out.
     stated = {i: unit for i, unit in enumerate(units, start=1) if unit}
@@ -160,6 +162,22 @@ def _source(
         step=None if timed else _number(segment.notes, "Delta_X", decimal),
         start=0.0 if timed else _number(segment.notes, "X0", decimal) or 0.0,
     )
+
+
+def _check_clocks(
+    segment: _Segment, names: Sequence[str], columns: Sequence[Array], decimal: str, name: str
+) -> None:
+    """Refuse channels with times of their own that are not those of the first channel."""
+    clocks = [i for i, own in enumerate(names) if own == "X_Value"][1:]
+    for index, times in zip(clocks, _columns(segment, clocks, decimal, name), strict=True):
+        step = abs(columns[0][-1] - columns[0][0]) / max(times.size - 1, 1)
+        apart = float(np.abs(times - columns[0]).max())
+        if not apart <= _NEAR * step:
+            channel = names[index + 1] if index + 1 < len(names) else names[index]
+            raise InputError(
+                channel, expected="sampled at the times of the first channel",
+                found=f"times up to {apart:.6g} s off; save channels with one clock", where=name,
+            )  # fmt: skip
 
 
 def _columns(segment: _Segment, wanted: Sequence[int], decimal: str, name: str) -> Iterator[Array]:

@@ -246,7 +246,8 @@ def _remedy(time: Array, bad: Indices) -> str:
             "many samples share one time, which is too coarse: give `sampling_rate` in [[records]],"
             " or --sampling-rate to `inerter init`"
         )
-    if bad.size < steps.size and (time[bad + 1] <= time[0]).all():
+    tests = np.diff(np.r_[0, bad + 1, time.size])  # samples of each
+    if tests.min() >= FEWEST_SAMPLES and (time[bad + 1] <= time[0]).all():
         return (
             'it begins again, as of several tests in one table: `group = "*"` in [[records]], of a'
             " workbook `sheet`, makes a record of each"

@@ -256,6 +256,28 @@ def _together(read: _Read, name: str, leaves: Sequence[Leaf], usual: Leaf | None
                     " several rates at one rate, and from one time on",
                     where=name,
                 )
+        _check_clocks(read, name, leaves, indices)
         return read(indices)
 
     return checked
+
+
+def _check_clocks(read: _Read, name: str, leaves: Sequence[Leaf], indices: Sequence[int]) -> None:
+    """Refuse columns of groups whose own columns of time do not agree."""
+    clocks = {
+        leaf.path[:-1]: i
+        for i, leaf in enumerate(leaves)
+        if leaf.role == "time" or leaf.path[-1].lower() == "time"
+    }
+    groups = {leaves[i].path[:-1]: "/".join(leaves[i].path) for i in indices}
+    own = [(clocks[group], column) for group, column in groups.items() if group in clocks]
+    if len(own) < 2:
+        return
+    first, *others = read([clock for clock, _ in own])
+    for (_, column), times in zip(own[1:], others, strict=True):
+        apart = float(np.abs(times - first).max())
+        if not apart <= _NEAR * abs(float(first[-1] - first[0])) / max(first.size - 1, 1):
+            raise InputError(
+                column, expected=f"sampled at the times of {own[0][1]}",
+                found=f"times up to {apart:.6g} off; save channels with one clock", where=name,
+            )  # fmt: skip

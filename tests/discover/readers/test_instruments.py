@@ -13,6 +13,7 @@ import openpyxl
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
+from asammdf import MDF, Signal
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
@@ -325,6 +326,33 @@ def test_labview_segments_are_tests_and_a_library_reads_the_same(tmp_path: Path)
         data = oracle[index]["data"]
         np.testing.assert_allclose(record.displacement, 1e-3 * data[:, 1], rtol=1e-12, atol=1e-12)
         np.testing.assert_allclose(record.force, 1e3 * data[:, 2], rtol=1e-12, atol=1e-12)
+
+
+def test_labview_channels_with_times_of_their_own_are_refused(tmp_path: Path) -> None:
+    lines = _lvm("Multi", 1.0).splitlines(keepends=True)
+    begin = next(i for i, line in enumerate(lines) if line.startswith("X_Value")) + 1
+    for i in range(begin, len(lines)):
+        x, weg, _, kraft = lines[i].split("\t")
+        lines[i] = "\t".join([x, weg, f"{float(x) + 0.1:.6f}", kraft])
+    (tmp_path / "a.lvm").write_text("".join(lines))
+    message = r"a.lvm: Kraft must be sampled at the times of the first channel, got times up to 0.1"
+    with pytest.raises(InputError, match=message):
+        _campaign(tmp_path, NAMED + '[[records]]\nfile = "a.lvm"\n')
+
+
+@pytest.mark.parametrize("late", [0.0, 0.1])
+def test_groups_with_clocks_of_their_own_have_to_agree(tmp_path: Path, late: float) -> None:
+    with MDF(version="4.10") as file:
+        file.append([Signal(LOAD, TIME, unit="kN", name="force")], acq_name="A")
+        file.append([Signal(STROKE, TIME + late, unit="mm", name="displacement")], acq_name="B")
+        file.save(tmp_path / "a.mf4", overwrite=True)
+    toml = '[columns]\ntime = "A/time"\n[[records]]\nfile = "a.mf4"\n'
+    if not late:
+        _check(_campaign(tmp_path, toml), 1.0)
+        return
+    message = r"B/displacement must be sampled at the times of A/force, got times up to 0.1 off"
+    with pytest.raises(InputError, match=message):
+        _campaign(tmp_path, toml)
 
 
 def test_labview_segments_that_go_on_in_time_are_one_test(tmp_path: Path) -> None:

@@ -169,6 +169,11 @@ def test_init_leaves_apart_what_is_not_plain(
     (tmp_path / "test2_disp.csv").write_text(STROKE_FILE)
     assert main(["init", "."]) == 2
     assert "test1_force.csv: no column for displacement" in capsys.readouterr().err
+    (tmp_path / "test2_disp.csv").rename(tmp_path / "test2.csv")
+    (tmp_path / "test1_force.csv").rename(tmp_path / "test1.csv")
+    assert main(["init", "."]) == 2
+    assert "test1.csv: no column for displacement" in capsys.readouterr().err
+    (tmp_path / "test1.csv").rename(tmp_path / "test1_force.csv")
     later = text("time [s],displacement [mm]", TIME + 0.001, DISPLACEMENT)
     (tmp_path / "test1_disp.csv").write_text(later)
     assert main(["init", "."]) == 2
