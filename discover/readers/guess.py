@@ -120,6 +120,8 @@ def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
         name = name_score(split_header(header)[0], quantity)
         if source.roles.get(quantity) == index:
             name = CANONICAL
+        elif quantity != "time" and name_score(header, "time") and _is_rising(source, index):
+            continue  # the time of that channel
         if name > 0.0 or (fitting and quantity in _NEEDED):
             commanded = 0.5 if of_command(split_header(header)[0]) else 1.0
             scores[index] = (name + commanded * fitting, name, fitting)

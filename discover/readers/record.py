@@ -20,6 +20,7 @@ from discover.readers.consistency import derivative_agreement
 from discover.readers.entries import Entry
 from discover.readers.labels import check_labels
 from discover.readers.odd_samples import Place, odd_samples
+from discover.readers.other_times import other_times
 from discover.readers.sampling import Sampled, regular, resampling_text
 from discover.readers.source import Source
 from discover.readers.time_text import time_text
@@ -68,6 +69,8 @@ def read_record(
     file = entry.label(part)
     columns, place = _asked_columns(source, entry, names, units, file)
     findings = _header_findings(columns, file)
+    if columns.step is None:
+        findings += [Finding("note", text, file) for text in other_times(source, names)]
     measured = dict(columns.values)
     time = measured.pop("time")
     sampled = regular(

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from discover.readers.names import LETTER, name_score
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import (
     MOST_VALUES,
@@ -267,7 +268,7 @@ def _check_clocks(read: _Read, name: str, leaves: Sequence[Leaf], indices: Seque
     clocks = {
         leaf.path[:-1]: i
         for i, leaf in enumerate(leaves)
-        if leaf.role == "time" or leaf.path[-1].lower() == "time"
+        if leaf.role == "time" or name_score(leaf.path[-1], "time") >= LETTER
     }
     groups = {leaves[i].path[:-1]: "/".join(leaves[i].path) for i in indices}
     own = [(clocks[group], column) for group, column in groups.items() if group in clocks]

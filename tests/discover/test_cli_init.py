@@ -252,6 +252,15 @@ def test_seconds_and_nanoseconds_in_columns_of_their_own_are_no_time(
     assert "no column for time among stamp.secs, stamp.nsecs" in capsys.readouterr().err
 
 
+def test_the_time_of_a_channel_is_not_the_channel(here: Path) -> None:
+    x, force = _test(2.0)
+    np.savez(here / "a.npz", t_force=TIME, force=force, t_disp=TIME, disp=x)
+    assert main(["init", "."]) == 0
+    (record,) = read_campaign(here).records
+    np.testing.assert_allclose(record.displacement, x, atol=1e-12)
+    np.testing.assert_allclose(record.force, force, rtol=1e-12)
+
+
 def test_a_time_beside_every_channel_is_one(here: Path) -> None:
     x, force = _test(2.0)
     for name, late in (("a.csv", 0.0), ("b.csv", 1e-3)):
