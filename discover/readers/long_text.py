@@ -55,7 +55,7 @@ def open_long_text(path: Path, name: str) -> Book:
     text, rows, tables = laid_out(head[: head.rindex(b"\n") + 1], name)
     layout = tables[0]
     regular = len(tables) == 1 and text.delimiter != SPACES and layout.last == rows.count
-    if not regular or not layout.first:
+    if not (regular and layout.first):
         return whole(path.read_bytes(), name)
     headers, decimal = fields_of(text, layout)
     names = [f"c{i}" for i in range(len(headers))]
@@ -68,8 +68,7 @@ def open_long_text(path: Path, name: str) -> Book:
             with _opened(path, end) as file, pa_csv.open_csv(
                 file,
                 read_options=pa_csv.ReadOptions(
-                    column_names=names, skip_rows=layout.first, block_size=_PIECE,
-                    use_threads=False,
+                    column_names=names, skip_rows=layout.first, block_size=_PIECE, use_threads=False
                 ),
                 parse_options=pa_csv.ParseOptions(delimiter=text.delimiter),
                 convert_options=pa_csv.ConvertOptions(
@@ -90,8 +89,8 @@ def open_long_text(path: Path, name: str) -> Book:
     return single(
         Source(
             name, headers, read, lambda row: f"line {row + layout.first + 1}",
-            units=layout.units, step=stated_step(layout.notes),
-            rows=lines - layout.first - (cut is not None), pieces=pieces, told=told,
+            units=layout.units, step=stated_step(layout.notes), pieces=pieces, told=told,
+            rows=lines - layout.first - (cut is not None),
         )
     )  # fmt: skip
 
