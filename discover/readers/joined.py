@@ -13,12 +13,12 @@ import numpy as np
 from discover.readers.columns import QUANTITIES, find_column, split_header, stated_unit
 from discover.readers.guess import guess_table
 from discover.readers.names import NAMED, known_name, name_score
+from discover.readers.one_clock import off_clock
 from discover.readers.source import Source
 from discover.readers.units import measures, to_si
 from models.checks import Array, InputError
 
 _WORD = re.compile(r"\d+|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[^\W\d_]+")
-_NEAR = 0.05  # of a sampling interval, to which times of one sample agree
 
 
 @dataclass(frozen=True)
@@ -173,8 +173,7 @@ def _agreed(parts: Sequence[_Part], files: Sequence[str]) -> int:
         return count
     first, own = timed[0]
     for times, file in timed[1:]:
-        step = abs(float(first[count - 1] - first[0])) / max(count - 1, 1)
-        bad = np.flatnonzero(~(np.abs(times[:count] - first[:count]) <= _NEAR * step))
+        bad = off_clock(first[:count], times[:count])
         if bad.size:
             row = int(bad[0])
             raise InputError(

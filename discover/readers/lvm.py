@@ -10,11 +10,11 @@ import numpy as np
 from discover.readers.content import content_error
 from discover.readers.cut_row import BEFORE, cut_text, is_cut
 from discover.readers.numerals import value
+from discover.readers.one_clock import off_clock
 from discover.readers.source import Book, Source, column_reader
 from models.checks import Array, InputError, shown
 
 _UNEVEN = 0.5  # of a step, by which the next segment may begin off the grid
-_NEAR = 0.05  # of a step, to which times of one sample agree
 _MARK = "***End_of_Header***"
 _TITLE = b"LabVIEW Measurement"
 
@@ -170,9 +170,8 @@ def _check_clocks(
     """Refuse channels with times of their own that are not those of the first channel."""
     clocks = [i for i, own in enumerate(names) if own == "X_Value"][1:]
     for index, times in zip(clocks, _columns(segment, clocks, decimal, name), strict=True):
-        step = abs(columns[0][-1] - columns[0][0]) / max(times.size - 1, 1)
-        apart = float(np.abs(times - columns[0]).max())
-        if not apart <= _NEAR * step:
+        if off_clock(columns[0], times).size:
+            apart = float(np.abs(times - columns[0]).max())
             channel = names[index + 1] if index + 1 < len(names) else names[index]
             raise InputError(
                 channel, expected="sampled at the times of the first channel",

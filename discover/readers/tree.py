@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from discover.readers.names import LETTER, name_score
+from discover.readers.one_clock import NEAR, off_clock
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import (
     MOST_VALUES,
@@ -23,7 +24,6 @@ from models.checks import Array, InputError
 
 _WIDEST = 64  # columns of a matrix that may be channels
 _SAME = 1e-9  # of a sampling interval, to which two of them are one
-_NEAR = 0.05  # of it, by which channels may begin apart
 _NESTED = (Mapping, list, np.ndarray)
 _Read = Callable[[Sequence[int]], list[Array]]
 
@@ -247,7 +247,7 @@ def _together(read: _Read, name: str, leaves: Sequence[Leaf], usual: Leaf | None
         for leaf in (leaves[i] for i in indices):
             if usual is None or usual.step is None or leaf.step is None:
                 continue
-            late = abs(leaf.start - usual.start) > _NEAR * usual.step
+            late = abs(leaf.start - usual.start) > NEAR * usual.step
             if late or abs(leaf.step - usual.step) > _SAME * usual.step:
                 raise InputError(
                     "/".join(leaf.path),
@@ -276,8 +276,8 @@ def _check_clocks(read: _Read, name: str, leaves: Sequence[Leaf], indices: Seque
         return
     first, *others = read([clock for clock, _ in own])
     for (_, column), times in zip(own[1:], others, strict=True):
-        apart = float(np.abs(times - first).max())
-        if not apart <= _NEAR * abs(float(first[-1] - first[0])) / max(first.size - 1, 1):
+        if off_clock(first, times).size:
+            apart = float(np.abs(times - first).max())
             raise InputError(
                 column, expected=f"sampled at the times of {own[0][1]}",
                 found=f"times up to {apart:.6g} off; save channels with one clock", where=name,
