@@ -37,9 +37,8 @@ def joined_tables(
     """Return the tests that several files make, and what is wrong with files that would be one.
 
     Names that differ in one word, as ``run1_force`` and ``run1_stroke``, or in the number of a
-    channel, as ``run1_ch1`` and ``run1_ch2``, belong together where
-    each file has another quantity, by its headers or else by that word, and all of them make a
-    record.
+    channel, as ``run1_ch1`` and ``run1_ch2``, belong together where each file has another quantity,
+    by its headers or else by that word, and all of them make a record.
 
     Parameters
     ----------
