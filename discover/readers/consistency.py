@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.checks import Array
 
@@ -93,6 +94,29 @@ def derivative_agreement(
     >>> round(found.gain, 4), found.accepted
     (1.1, False)
     """
+    plain, computed, found, level = _spectra(displacement, measured, step, order)
+    # Noise of a differentiated displacement grows with frequency: judge where x itself is strong.
+    power = np.abs(plain) ** 2
+    strong = power > 0.01 * power[1:].max()
+    strong[0] = False
+    # What is left of the measured signal at high frequencies is taken for noise, alike at all.
+    noise = float(np.sqrt(np.median(np.abs(found[found.size // 2 :]) ** 2) / np.log(2.0)))
+    offset = level[strong]  # a sensor's constant offset is no disagreement
+    offset = offset / np.linalg.norm(offset)
+    computed, found = (c[strong] - offset * np.vdot(offset, c[strong]) for c in (computed, found))
+    size_there = float(np.linalg.norm(computed))
+    if not size_there:  # a line that an offset would make as well
+        return Agreement(0.0, 0.0, 1.0, np.inf)
+    ratio = complex(np.vdot(computed, found) / size_there**2)
+    total = float(np.linalg.norm(found))
+    rest = float(np.linalg.norm(found - ratio * computed)) / total if total else 1.0
+    return Agreement(abs(ratio), float(np.angle(ratio)), rest, noise / size_there)
+
+
+def _spectra(
+    displacement: Array, measured: Array, step: float, order: int
+) -> tuple[NDArray[np.complex128], ...]:
+    """Return windowed transforms: of displacement, its derivative, the measured one and a level."""
     size = displacement.size
     turn = 2.0 * np.pi / ((size - 1) * step)
     angle = turn * step * np.arange(size)
@@ -103,24 +127,8 @@ def derivative_agreement(
     x = displacement - displacement.mean()
     omega = 2.0 * np.pi * np.fft.rfftfreq(size, step)
     plain, first = np.fft.rfft(window * x), np.fft.rfft(slope * x)
-    found = np.fft.rfft(window * measured)
     if order == 1:
         computed = 1j * omega * plain - first
     else:
         computed = np.fft.rfft(bend * x) - 2j * omega * first - omega**2 * plain
-    # Noise of a differentiated displacement grows with frequency: judge where x itself is strong.
-    power = np.abs(plain) ** 2
-    strong = power > 0.01 * power[1:].max()
-    strong[0] = False
-    # What is left of the measured signal at high frequencies is taken for noise, alike at all.
-    noise = float(np.sqrt(np.median(np.abs(found[found.size // 2 :]) ** 2) / np.log(2.0)))
-    offset = np.fft.rfft(window)[strong]  # a sensor's constant offset is no disagreement
-    offset = offset / np.linalg.norm(offset)
-    computed, found = (c[strong] - offset * np.vdot(offset, c[strong]) for c in (computed, found))
-    size_there = float(np.linalg.norm(computed))
-    if not size_there:  # a line that an offset would make as well
-        return Agreement(0.0, 0.0, 1.0, np.inf)
-    ratio = complex(np.vdot(computed, found) / size_there**2)
-    total = float(np.linalg.norm(found))
-    rest = float(np.linalg.norm(found - ratio * computed)) / total if total else 1.0
-    return Agreement(abs(ratio), float(np.angle(ratio)), rest, noise / size_there)
+    return plain, computed, np.fft.rfft(window * measured), np.fft.rfft(window)
