@@ -7,7 +7,7 @@ with what has joined, and evidence decides between the ways.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -76,6 +76,8 @@ class Device:
     """Number that is asked for; None lets the evidence choose."""
     seed: int = 0
     """Of what is drawn."""
+    family: str | None = None
+    """Whose best structure what joins is looked for beside; None for any."""
 
     @cached_property
     def assessor(self) -> Assessor:
@@ -133,53 +135,87 @@ class Found:
 
 
 def found(device: Device) -> Found:
-    """Return the most probable bands, with what the device has besides."""
-    now = _searched(device, (), None)
-    if now.quiet:
-        return now
-    best, ends = now, list[Found]()
-    starts = {b.bands: b for b in (now.banded, now.fewer[0])}
-    other = _other_family(now)
-    for start in (*starts.values(), other):
-        if start is other and not is_told_from_noise(best.assessed):
+    """Return the most probable bands, with what the device has besides.
+
+    Bands may stand for what a device has besides, and the other way round. So what may join is
+    looked for with bands, and with one band throughout.
+    """
+    best = _searched(device, (), None)
+    if best.quiet:
+        return best
+    ends, seen = list[Found](), set[tuple[object, ...]]()
+    for start in _starts(best):
+        if ends and not is_told_from_noise(best.assessed):
             break
-        way = replace(now, banded=start)
-        for _ in range(MOST):
-            more = _with_one_more(way)
-            if isinstance(more, Step):
-                ends.append(replace(way, last=more))
-                if way is best or (way.joined == best.joined):
-                    best = replace(best, last=more)
-                break
-            if more.value > best.value:
-                best = more
-            way = more
-            if more.quiet:
-                break
-        else:
-            ends.append(way)
+        end = _grown(start, seen)
+        if end is None:
+            continue
+        ends.append(end)
+        if len(ends) == 1 or (_names(end) != _names(best) and _is_better(end, best)):
+            best = end
         if best.quiet:
             return best
-    names = {j.id for j in best.joined}
-    return replace(best, rivals=tuple(e for e in ends if {j.id for j in e.joined} != names))
+    return replace(best, rivals=tuple(e for e in ends if _names(e) != _names(best)))
 
 
-def _other_family(now: Found) -> Banded:
-    """Return one band with the best structure of the family that the most probable one is not of.
+def _names(way: Found) -> set[str]:
+    """Return the ids of what has joined: beside the same, a way weighs all structures itself."""
+    return {j.id for j in way.joined}
+
+
+def _starts(now: Found) -> Iterator[Found]:
+    """Yield what terms join: the bands as they are found, one band, and one of each other family.
 
     What a device has besides, a delay say, may be what makes the wrong family more probable.
     """
-    one = now.fewer[0]
-    family = _family(now.variants[one.variants[0]])
-    others = [
-        -np.inf if _family(v) == family else value
-        for v, value in zip(now.variants, one.by_variant[0], strict=True)
-    ]
-    return replace(one, variants=(int(np.argmax(others)),))
+    yield now
+    if now.device.bands in (None, 1):
+        one = _searched(replace(now.device, bands=1), (), None)
+        yield one
+        for other in sorted({family_of(_ids(v)) for v in one.variants} - {_family(one)}):
+            yield _searched(replace(one.device, family=other), (), None)
 
 
-def _family(variant: Variant) -> str:
-    return family_of([t.id for p in variant.parts for t in p.terms])
+def _grown(way: Found, seen: set[tuple[object, ...]]) -> Found | None:
+    """Return a way with all that may join, its bands searched for anew.
+
+    None where it comes to one band with what another has had there, as `seen` tells.
+    """
+    path = list[Found]()
+    while not way.quiet and len(way.joined) < MOST:
+        if _sign(way) in seen:
+            return None
+        path.append(way)
+        more = _with_one_more(way)
+        if isinstance(more, Step):
+            way = replace(way, last=more)
+            break
+        way = more
+    if all(w.banded.bands == 1 for w in path):
+        seen.update(_sign(w) for w in path)
+    return way
+
+
+def _sign(way: Found) -> tuple[object, ...]:
+    """Return by what a way goes on: its bands, what they have and what has joined."""
+    joined = tuple((j.id, len(j.terms)) for j in way.joined)
+    return way.banded.variants, way.banded.shares.tobytes(), joined
+
+
+def _is_better(now: Found, was: Found) -> bool:
+    """Tell whether a way is better: by evidence where one leaves but noise, else by prediction."""
+    if now.quiet or was.quiet:
+        return now.value > was.value
+    return predicts_better(was.assessed, now.assessed)
+
+
+def _family(way: Found) -> str:
+    """Return the family of the structure in the lowest band."""
+    return family_of(_ids(way.variants[way.banded.variants[0]]))
+
+
+def _ids(variant: Variant) -> list[str]:
+    return [t.id for p in variant.parts for t in p.terms]
 
 
 def _searched(device: Device, joined: Sequence[Joined], place: Place | None,
@@ -196,10 +232,34 @@ def _searched(device: Device, joined: Sequence[Joined], place: Place | None,
         space, variants, curve if device.with_friction else None, tuple(parts),
         {name: values[name] for name in device.coordinates},
     )
-    bands = searched(search, place, bands=device.bands)
+    bands = [_held(device, search, b) for b in searched(search, place, bands=device.bands)]
     space.forget()
-    chosen = bands[-1] if device.bands is not None else max(bands, key=lambda b: b.value)
-    return Found(device, chosen, tuple(bands), search, tuple(joined), None)
+    way = Found(device, bands[-1], tuple(bands), search, tuple(joined), None)
+    return _chosen(way if device.bands is None else replace(way, fewer=way.fewer[-1:]))
+
+
+def _held(device: Device, search: BandSearch, banded: Banded) -> Banded:
+    """Return a division with the best structures of the device's family, where it has one."""
+    if device.family is None:
+        return banded
+    other = [family_of(_ids(v)) != device.family for v in search.variants]
+    values = np.where(other, -np.inf, banded.by_variant)
+    return replace(banded, variants=tuple(int(v.argmax()) for v in values))
+
+
+def _chosen(way: Found) -> Found:
+    """Return the way with the most probable number of bands.
+
+    Where more than noise is left, more bands have to predict records left out better.
+    """
+    best = replace(way, banded=max(way.fewer, key=lambda b: b.value))
+    if best.banded.bands == 1 or best.quiet:
+        return best
+    best, *others = (replace(way, banded=b) for b in way.fewer)
+    for more in others:
+        if predicts_better(best.assessed, more.assessed):
+            best = more
+    return best
 
 
 def _space(
@@ -267,7 +327,24 @@ def _without_superfluous(way: Found) -> Found:
         own, less = _less(way, joined)
         if not (is_told(now, own) and is_needed(less, now)):
             way = _left_with(way, joined, less)
+        elif len(joined.terms) > 1:
+            way = _in_one(way, joined, less)
     return way
+
+
+def _in_one(way: Found, joined: Joined, less: Assessed) -> Found:
+    """Return the bands with one term in place of several of its kind, where it serves as well.
+
+    An offset of every test's own may have joined for what another term explains since.
+    """
+    size = float(np.mean([t.coefficient for t in joined.terms]))
+    model = less.model.plus(FittedTerm(joined.id, size, {}))
+    one = way.device.assessor.assess(model, less.place)
+    if is_needed(one, way.assessed):
+        return way
+    simpler = replace(joined, terms=(one.model.terms[-1].fitted,))
+    others = [simpler if j is joined else j for j in way.joined]
+    return _searched(way.device, others, one.place, one)
 
 
 def without(way: Found, joined: Joined) -> Found:

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from discover.bands.extras import Found
-from discover.bands.search import Banded
 from discover.posterior.own_share import own_share
 from discover.posterior.spread import idle
 from models.checks import Array
@@ -26,9 +25,9 @@ Mask = NDArray[np.bool_]
 def told(found: Found) -> Found:
     """Return the answer; where more is left than noise it is told with less surety.
 
-    The likelihood of each structure, and of each number of bands, is taken to the power of the
-    share of the lines that say something of their own (a power posterior: Miller and Dunson, *J.
-    Am. Stat. Assoc.* 114 (2019) 1113-1125).
+    The likelihood of each structure is taken to the power of the share of the lines that say
+    something of their own (a power posterior: Miller and Dunson, *J. Am. Stat. Assoc.* 114 (2019)
+    1113-1125).
     """
     if found.quiet:
         return found
@@ -39,10 +38,7 @@ def told(found: Found) -> Found:
 
 
 def _at_power(found: Found, power: float) -> Found:
-    """Return the answer with structures, and numbers of bands, weighed at a power."""
-    if found.device.bands is None:
-        values = [_value_at_power(found, b, power) for b in found.fewer]
-        found = replace(found, banded=found.fewer[int(np.argmax(values))])
+    """Return the answer with its structures weighed at a power."""
     found = _without_idle(found)
     banded = found.banded
     _, _, answer = found.search.one(
@@ -80,13 +76,6 @@ def _cores(found: Found) -> dict[str, Mask]:
     """Return which variants (V,) have each core."""
     cores = np.array([v.core for v in found.variants])
     return {str(core): cores == core for core in dict.fromkeys(cores)}
-
-
-def _value_at_power(found: Found, banded: Banded, power: float) -> float:
-    """Return the log evidence, nats, of a number of bands, its likelihood taken to a power."""
-    start = np.array(banded.variants)
-    value, _, _ = found.search.one(banded.place, banded.shares, start, others=False, power=power)
-    return value + banded.value - banded.at_place
 
 
 def _total(values: Array) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.catalogue import trials_of
-from discover.posterior.left_out import left_out
+from discover.posterior.left_out import predicted
 from discover.posterior.own_share import own_lines
 from discover.posterior.step import Candidate, Step, ordered
 from discover.posterior.weigh import Gain, gains
@@ -51,7 +51,7 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
         found += _tried(assessor, now, chosen, len(ids))
-    if any(c.assessed.quiet for c in found if c.assessed):
+    if len(now.space.sheet.units) == 1 or any(c.assessed.quiet for c in found if c.assessed):
         return ordered(Step(tuple(found), assessor.seed))
     weighed = [_predicting(c) if c.value > now.value - _NATS else c for c in found]
     parts = next(c.left.size for c in weighed if c.left is not None)
@@ -62,7 +62,7 @@ def _predicting(candidate: Candidate) -> Candidate:
     """Return a candidate with what it leaves of records that are predicted by the others."""
     if candidate.assessed is None:
         return candidate
-    return replace(candidate, left=left_out(candidate.assessed.predicting)[1])
+    return replace(candidate, left=predicted(candidate.assessed))
 
 
 def _simulated(identifier: str) -> bool:

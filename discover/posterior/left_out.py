@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import softmax
 
 from discover.posterior.assess import Assessed
 from discover.posterior.evidence import root_of
+from discover.posterior.own_share import own_lines
 from discover.posterior.sheet import Sheet
 from models.checks import Array, Indices
 
@@ -34,6 +36,23 @@ def left_out(assessed: Assessed) -> tuple[Array, Array]:
         Mean square of what is left over that of the record's force. The remainder that records
         share is not used to predict.
     """
+    fitted, predicted, _ = _left(assessed)
+    return fitted, predicted
+
+
+def predicted(assessed: Assessed) -> Array:
+    """Return what a model leaves (N,) of each record by which it is compared with others.
+
+    Numbers that only the record itself tells are charged as fitted ones are (Akaike, *IEEE Trans.
+    Autom. Control* 19, 1974, 716-723), each by the lines that say something of their own.
+    """
+    best = assessed.predicting
+    _, errors, own = _left(best)
+    return np.asarray(errors * np.exp(2.0 * own / own_lines(best, errors.size)))
+
+
+def _left(assessed: Assessed) -> tuple[Array, Array, Array]:
+    """Return what is left, fitted and predicted, and how many numbers only the record tells."""
     space, local = assessed.space, assessed.local
     curve = assessed.curve
     here = space.given(assessed.place.sizes(space.own_unit))
@@ -44,27 +63,28 @@ def left_out(assessed: Assessed) -> tuple[Array, Array]:
     gram = here.within(columns)
     spread = np.concatenate([local.spread, wide])
     records = np.array([u.record for u in space.sheet.units])
-    parts = records if records.max() > 0 else np.arange(records.size)
+    alone = records.max() == 0
+    parts = np.arange(records.size) if alone else records
     total = gram.sum(axis=0)
     free = np.ones(spread.size, dtype=bool)
     free[: local.held.size] = ~local.held
-    found = np.zeros((2, parts.max() + 1))
+    found = np.zeros((3, parts.max() + 1))
     for part in range(parts.max() + 1):
         inside = parts == part
         own = gram[inside].sum(axis=0)
-        elsewhere = free & (np.diagonal(total - own)[:-1] > _NOTHING * np.diagonal(total)[:-1])
-        if parts is not records:
-            elsewhere = free
+        shown = np.diagonal(total - own)[:-1] > _NOTHING * np.diagonal(total)[:-1]
+        elsewhere = free if alone and parts.size > 1 else free & shown
         for place, (some, seen) in enumerate(((total, free), (total - own, elsewhere))):
             values = _beside(some, spread, seen, np.zeros(spread.size))
             values = _beside(own, spread, free & ~seen, values)
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
             found[place, part] = _relative(space.sheet, np.flatnonzero(inside), left)
-    fitted, predicted = found
-    return fitted, predicted if predicted.size > 1 else fitted
+        found[2, part] = np.count_nonzero(free & ~elsewhere & (np.diagonal(own)[:-1] > 0.0))
+    fitted, by_others, its_own = found
+    return fitted, by_others, its_own
 
 
-def _beside(gram: Array, spread: Array, free: Indices, values: Array) -> Array:
+def _beside(gram: Array, spread: Array, free: NDArray[np.bool_], values: Array) -> Array:
     """Return coefficients (P,): the free ones by products (P + 1, P + 1), beside the others."""
     if not np.any(free):
         return values
@@ -77,9 +97,12 @@ def _beside(gram: Array, spread: Array, free: Indices, values: Array) -> Array:
 
 
 def predicts_better(was: Assessed, now: Assessed) -> bool:
-    """Tell whether a model predicts records that are left out better than another one."""
-    before, after = (left_out(a.predicting)[1] for a in (was, now))
-    return is_less(after, before)
+    """Tell whether a model predicts records that are left out better than another one.
+
+    Of one record in a single part nothing can be left out: evidence decides.
+    """
+    before, after = (predicted(a) for a in (was, now))
+    return now.value > was.value if after.size < 2 else is_less(after, before)
 
 
 def is_told_from_noise(assessed: Assessed) -> bool:

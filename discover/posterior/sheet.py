@@ -50,7 +50,7 @@ class Sheet:
     """(U, F, R) generic functions of the motion."""
     loudness: Array
     """(U, L, R) what each kind of independent error of the record's own size is in each row; the
-    last one is the same in all rows."""
+    last one is the same in all rows, and by it all records count alike."""
     rest: Array
     """(U, 2 + L): number of rows that were left out, their sum of squares, mean loudness squared.
     """
@@ -98,7 +98,8 @@ def sheet_of(rows: Sequence[RecordRows], columns: Sequence[Array]) -> Sheet:
         remainder or the measured force show are kept.
     """
     kinds = max(r.loudness.shape[0] for r in rows)
-    rows = [replace(r, loudness=_all_kinds(r, kinds)) for r in rows]
+    least = min(r.size.size for r in rows)
+    rows = [replace(r, loudness=_all_kinds(r, kinds, least)) for r in rows]
     units: list[Unit] = []
     parts: list[tuple[Array, Array, Array]] = []
     rest = []
@@ -132,11 +133,15 @@ def sheet_of(rows: Sequence[RecordRows], columns: Sequence[Array]) -> Sheet:
     )  # fmt: skip
 
 
-def _all_kinds(rows: RecordRows, kinds: int) -> Array:
-    """Return loudness (L + 1, R) with as many kinds as other records have, and one that is flat."""
+def _all_kinds(rows: RecordRows, kinds: int, least: int) -> Array:
+    """Return loudness (L + 1, R) with as many kinds as other records have, and one that is flat.
+
+    By the flat one a record counts as much as one of the `least` rows, however many it has.
+    """
     own = rows.loudness
     none = np.zeros((kinds - own.shape[0], own.shape[1]))
-    flat = rows.size / np.sqrt(rows.size.size)
+    windows = np.sum((rows.target / rows.size) ** 2)  # the size is of one
+    flat = rows.size * np.sqrt(windows / least)
     return np.concatenate([own, none, flat[None]])
 
 

@@ -72,16 +72,23 @@ def spread_of(assessed: Assessed, predicting: Composite) -> Spread:
 def idle(predicting: Assessed) -> list[int]:
     """Return the places of terms that may as well be nothing where terms alone predict.
 
-    The least sure comes first; a coefficient of the wrong sign counts as nothing.
+    The least sure comes first; a coefficient of the wrong sign counts as nothing. So does a term
+    whose shape is not told from an end of its range, where it is another term: a derivative of
+    order zero is a spring.
     """
     local, solved = predicting.local, predicting.judged.solved
     wide = np.sqrt(np.maximum(np.diagonal(solved.covariance), 1e-300))
-    signed = np.where(local.sign == 0.0, np.abs(solved.mean), local.sign * solved.mean)
-    found = {
-        n.term: float(s) for n, s in zip(local.numbers, signed / wide, strict=True)
-        if n.shape is None and s <= SURE
-    }
-    return sorted(found, key=lambda place: found[place])
+    found: dict[int, float] = {}
+    for n, mean, own, sign in zip(local.numbers, solved.mean, wide, local.sign, strict=True):
+        if n.shape is None:
+            away = abs(mean) if sign == 0.0 else sign * mean
+        else:
+            term = local.model.terms[n.term].fitted.term
+            low, high = next((p.lower, p.upper) for p in term.parameters if p.name == n.shape)
+            value = local.model.value(n) + mean
+            away = min(value - low, high - value)
+        found[n.term] = min(found.get(n.term, np.inf), float(away / own))
+    return sorted((p for p, s in found.items() if s <= SURE), key=lambda p: found[p])
 
 
 def is_told(assessed: Assessed, terms: Collection[int]) -> bool:

@@ -21,6 +21,7 @@ from tests.discover.posterior.small import (
     log_density,
     model_of,
     of_formula,
+    random_rows,
     rows_of,
     whole_force,
     widened,
@@ -245,3 +246,22 @@ def test_a_sensor_s_gain_that_differs_from_test_to_test_is_found():
     assert found.quiet
     assert found.model.terms[3].fitted.coefficient == pytest.approx(0.1, abs=0.005)
     assert found.model.terms[0].fitted.coefficient == pytest.approx(120.0, rel=0.01)
+
+
+def test_a_record_of_many_lines_counts_no_more_than_one_of_few_where_terms_alone_predict():
+    """By their lines the random record of another damping would be met, and the sine tests not."""
+    rows = [*rows_of(lambda t, x, v, a: 120.0 * a + 300.0 * v, APART), random_rows()]
+    assert rows[-1].size.size > 10 * rows[0].size.size
+    assessor = assessor_of(rows, friction=False)
+    space = assessor.space
+    found = assessor.assess(DEVICE, space.start).predicting.model
+    terms = (FittedTerm("inertia", 1.0), FittedTerm("viscous-damping", 1.0))
+    matrix, side = [], []
+    for r in rows:
+        force = float(np.linalg.norm(r.target / r.size))
+        matrix.append(space.columns_of(r, terms).T / r.size[:, None] / force)
+        side.append(r.target / r.size / force)
+    alike = np.linalg.lstsq(np.concatenate(matrix), np.concatenate(side), rcond=None)[0]
+    for number, expected in zip(found.numbers, alike, strict=True):
+        assert found.value(number) == pytest.approx(expected, rel=0.05)
+    assert alike[1] < 600.0  # of 300 and 800

@@ -14,6 +14,7 @@ from discover.posterior.left_out import (
     predicts_best,
     predicts_better,
 )
+from discover.posterior.left_out import predicted as compared
 from discover.posterior.model import Composite
 from discover.records import Campaign, Record
 from discover.rows.columns import force_columns
@@ -109,6 +110,39 @@ def predicted(device, model):
     assessor = device.assessor
     assessed = assessor.assess(Composite.of(model), assessor.space.start)
     return left_out(assessed.predicting)[1]
+
+
+def test_an_offset_of_every_record_s_own_has_to_be_worth_a_number_for_each():
+    """Beside an offset that all share, and a third harmonic that no term has."""
+    def law(amplitude, omega, theta):
+        v = amplitude * omega
+        nearly = 60.0 + 9.0 * v * np.sign(np.sin(730.0 * v))
+        plain = -80.0 * v * omega * np.sin(theta) + 900.0 * v * np.cos(theta)
+        return plain + nearly + 200.0 * v * np.cos(3.0 * theta)
+
+    records = campaign(law, frequencies=FREQUENCIES, amplitudes=(0.01, 0.02), noise=0.001)
+    device = prepare(records, StudyOptions()).device
+    structure = FittedTerm("inertia", 80.0), FittedTerm("viscous-damping", 900.0)
+    count = len(records.records)
+    own = tuple(FittedTerm("force-offset", 60.0, {"only": n + 1.0}) for n in range(count))
+    shared, each = (
+        device.assessor.assess(
+            Composite.of(ForceModel((*structure, *offsets))), device.assessor.space.start
+        )
+        for offsets in ((FittedTerm("force-offset", 60.0),), own)
+    )
+    assert is_less(left_out(each.predicting)[1], left_out(shared.predicting)[1])
+    assert not predicts_better(shared, each)
+    np.testing.assert_array_equal(compared(shared), left_out(shared.predicting)[1])
+
+
+def test_of_one_record_in_one_piece_evidence_decides():
+    rows = rows_of(misfit(20.0), APART[:1], cycles=3)
+    assessor = assessor_of(rows, friction=False)
+    bare, sprung = (assessor.assess(m, assessor.space.start) for m in (DEVICE, SPRUNG))
+    less = replace(sprung, value=bare.value - 1.0)
+    more = replace(sprung, value=bare.value + 1.0)
+    assert (predicts_better(bare, less), predicts_better(bare, more)) == (False, True)
 
 
 def long_record():

@@ -152,3 +152,21 @@ def test_a_shape_that_is_sure_tells_nothing_of_its_term():
     model = model_of(inertia=100.0, viscous_damping=700.0).plus(term)
     assessed = assessed_of(plain, model)
     assert not is_told(assessed, [2])
+
+
+def fractional(order):
+    """Return the law of a derivative of a sine beside a third harmonic that no term has."""
+    def law(t, x, v, a):
+        omega = np.abs(v).max() / np.abs(x).max()
+        turn = 0.5 * np.pi * order
+        own = omega**order * (x * np.cos(turn) + v / omega * np.sin(turn))
+        phase = np.arctan2(v / np.abs(v).max(), x / np.abs(x).max())
+        return 5e3 * own + 500.0 * np.abs(own).max() * np.cos(3.0 * phase)
+
+    return law
+
+
+@pytest.mark.parametrize(("order", "place"), [(0.0, [0]), (0.5, []), (2.0, [0])])
+def test_a_derivative_whose_order_is_that_of_a_spring_or_a_mass_is_no_fractional_one(order, place):
+    start = model_of().plus(FittedTerm("fractional-derivative", 1e3, {"order": 0.4 + 0.6 * order}))
+    assert idle(assessed_of(fractional(order), start).predicting) == place
