@@ -14,6 +14,7 @@ import numpy as np
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.catalogue import trials_of
+from discover.posterior.climb import Place
 from discover.posterior.left_out import predicted
 from discover.posterior.own_share import own_lines
 from discover.posterior.step import Candidate, Step, ordered
@@ -34,7 +35,7 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
     """Return what may join a model.
 
     Terms that only add a force come first. Those that are simulated in time, which takes long, are
-    tried where these leave more than noise.
+    tried where these leave more than noise and gain no more than twice as much in a straight line.
 
     Parameters
     ----------
@@ -46,11 +47,12 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         Terms that may join.
     """
     found = [Candidate("", now.value, now)]
+    most: dict[Place, float] = {}
     for simulated in (False, True):
         chosen = [i for i in ids if _simulated(i) is simulated]
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
-        found += _tried(assessor, now, chosen, len(ids))
+        found += _tried(assessor, now, chosen, len(ids), most)
     if len(now.space.sheet.units) == 1 or any(c.assessed.quiet for c in found if c.assessed):
         return ordered(Step(tuple(found), assessor.seed))
     weighed = [_predicting(c) if c.value > now.value - _NATS else c for c in found]
@@ -71,8 +73,9 @@ def _simulated(identifier: str) -> bool:
 
 
 def _tried(
-    assessor: Assessor, now: Assessed, ids: Sequence[str], among: int
+    assessor: Assessor, now: Assessed, ids: Sequence[str], among: int, most: dict[Place, float]
 ) -> list[Candidate]:
+    """Return some terms beside the model; `most` is kept, what any has gained at some sizes."""
     space = now.space
     trials = trials_of(space.scales, assessor.evaluator.coarse, ids, now.model, among=among)
     if not trials.entries:
@@ -84,16 +87,16 @@ def _tried(
         best.place: best.local, space.quiet: now.local, now.place: now.local
     }.items():
         weighed = gains(space, trials, local, place.sizes(space.own_unit), curve)
-        most = weighed[0].value
+        top = most[place] = max(most.get(place, -np.inf), weighed[0].value)
         for gain in weighed:
-            behind.setdefault(gain.trial.id, []).append((most - gain.value, gain, most))
+            behind.setdefault(gain.trial.id, []).append((top - gain.value, gain, top))
     for one in behind.values():
         one.sort(key=lambda entry: entry[0])
     found: list[Candidate] = []
     for rank, one in enumerate(sorted(behind.values(), key=lambda own: own[0][0])):
         gain = one[0][1]
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
-        worth = any(g.value >= max(_HOPELESS, near * most - _NATS) for _, g, most in one)
+        worth = any(g.value >= max(_HOPELESS, near * top - _NATS) for _, g, top in one)
         if rank >= _NAMES or not worth:
             found.append(Candidate(gain.trial.id, now.value + min(gain.value, 0.0), None))
         else:
