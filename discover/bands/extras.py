@@ -338,13 +338,23 @@ def _in_one(way: Found, joined: Joined, less: Assessed) -> Found:
     An offset of every test's own may have joined for what another term explains since.
     """
     size = float(np.mean([t.coefficient for t in joined.terms]))
-    model = less.model.plus(FittedTerm(joined.id, size, {}))
+    model = less.model.plus(FittedTerm(joined.id, size, _common_shape(joined.terms)))
     one = way.device.assessor.assess(model, less.place)
     if is_needed(one, way.assessed):
         return way
     simpler = replace(joined, terms=(one.model.terms[-1].fitted,))
     others = [simpler if j is joined else j for j in way.joined]
     return _searched(way.device, others, one.place, one)
+
+
+def _common_shape(terms: Sequence[FittedTerm]) -> dict[str, float]:
+    """Return the shape of one term for several: a choice in which they differ is by default."""
+    found = {}
+    for parameter in terms[0].term.parameters:
+        values = [t.shape[parameter.name] for t in terms]
+        alike = parameter.fitted or len(set(values)) == 1
+        found[parameter.name] = float(np.mean(values)) if alike else parameter.default
+    return found
 
 
 def without(way: Found, joined: Joined) -> Found:
