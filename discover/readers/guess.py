@@ -20,11 +20,8 @@ _NEAR = 0.05  # of a score, within which two columns are equally likely
 _FEWEST = 16  # samples, from which a guess is made by the values
 _SMALL_STROKE = 0.3  # below it metres, from it on millimetres: of what laboratories write
 _COARSE_STEP = 0.3  # s: from it on a finer unit
-_TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-_FINE_STEP, _LATE = (
-    1e-5,
-    1e4,
-)  # steps below the one, from beyond the other on, are of a date in days
+_TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}  # s, coarsest first
+_FINE_STEP, _LATE = 1e-5, 1e4  # steps below the one, from beyond the other on, are a date's in days
 
 
 @dataclass(frozen=True)
