@@ -2,7 +2,7 @@
 
 A spring or a friction that depends on place, left out, would turn into a boundary. So terms of the
 catalogue join the model with one band as well as that with several, bands are searched for anew
-with what has joined, and evidence decides between the ways.
+with what has joined. Evidence decides between the ways where one leaves but noise, else prediction.
 """
 
 from __future__ import annotations
@@ -170,10 +170,13 @@ def _starts(now: Found) -> Iterator[Found]:
     """
     yield now
     if now.device.bands in (None, 1):
-        one = _searched(replace(now.device, bands=1), (), None)
+        device, banded = replace(now.device, bands=1), now.fewer[0]
+        one = replace(now, device=device, banded=banded, fewer=(banded,))
         yield one
         for other in sorted({family_of(_ids(v)) for v in one.variants} - {_family(one)}):
-            yield _searched(replace(one.device, family=other), (), None)
+            device = replace(one.device, family=other)
+            held = _held(device, now.search, banded)
+            yield replace(one, device=device, banded=held, fewer=(held,))
 
 
 def _grown(way: Found, seen: set[tuple[object, ...]]) -> Found | None:

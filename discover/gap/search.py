@@ -212,9 +212,13 @@ class Mended:
     def compared(self, step: Step) -> Step:
         """Return a step that leaves more than noise, weighed by what the mended models predict.
 
-        What is out of the question before stays so.
+        What did not predict before is out of the question.
         """
-        possible = {i for i, p in step.probabilities.items() if not i or p >= _POSSIBLE}
+        known = step.probabilities
+        possible = {
+            c.id for c in step.candidates
+            if not c.id or known[c.id] >= _POSSIBLE or (c.left is not None and c.left.size == 1)
+        }
         return ordered(replace(step, candidates=tuple(
             c if c.left is None
             else replace(c, left=self.by(c).errors) if c.id in possible

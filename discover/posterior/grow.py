@@ -53,11 +53,8 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
         found += _tried(assessor, now, chosen, len(ids), most)
-    by_evidence = ordered(Step(tuple(found), assessor.seed))
     if any(c.assessed.quiet for c in found if c.assessed):
-        return by_evidence
-    if len(now.space.sheet.units) == 1 and by_evidence.best.id:
-        return by_evidence  # nothing can be left out of one record in one piece
+        return ordered(Step(tuple(found), assessor.seed))
     weighed = [_predicting(c) if c.value > now.value - _NATS else c for c in found]
     parts = next(c.left.size for c in weighed if c.left is not None)
     return ordered(Step(tuple(weighed), assessor.seed, own_lines(now.predicting, parts)))

@@ -67,10 +67,11 @@ class Step:
     def probabilities(self) -> dict[str, float]:
         """Of every id, and of "" for the model as it is.
 
-        By evidence where one leaves but noise. Else by how well each predicts; a name has to make
-        the records more probable beside a remainder, too, which may be all that there is.
+        By evidence where one leaves but noise, or nothing can be left out. Else by how well each
+        predicts; a name has to make the records more probable beside a remainder, too, which may be
+        all that there is.
         """
-        weighed = [c for c in self.candidates if c.left is not None]
+        weighed = [c for c in self.candidates if c.left is not None and c.left.size > 1]
         if not weighed:
             shares = softmax([c.value for c in self.candidates])
             return {c.id: float(p) for c, p in zip(self.candidates, shares, strict=True)}

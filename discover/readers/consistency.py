@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from discover.record_checks.by_parts import windowed_derivatives
 from models.checks import Array
 
 GAIN_TOLERANCE = 0.05
@@ -67,10 +67,7 @@ def derivative_agreement(
 ) -> Agreement:
     """Compare a measured derivative with the displacement without differentiating.
 
-    With a window h that vanishes with its slope at both ends, integration by parts gives
-    ``int h e v = -int (h e)' x`` and ``int h e a = int (h e)'' x`` exactly for every
-    ``e = exp(-i w t)``: only the window is differentiated. The bins that hold the motion's power
-    are compared.
+    Only a window is differentiated. The bins that hold the motion's power are compared.
 
     Parameters
     ----------
@@ -94,14 +91,15 @@ def derivative_agreement(
     >>> round(found.gain, 4), found.accepted
     (1.1, False)
     """
-    plain, computed, found, level = _spectra(displacement, measured, step, order)
+    window, transforms = windowed_derivatives(displacement, step)
+    plain, computed, found = transforms[0], transforms[order], np.fft.rfft(window * measured)
     # Noise of a differentiated displacement grows with frequency: judge where x itself is strong.
     power = np.abs(plain) ** 2
     strong = power > 0.01 * power[1:].max()
     strong[0] = False
     # What is left of the measured signal at high frequencies is taken for noise, alike at all.
     noise = float(np.sqrt(np.median(np.abs(found[found.size // 2 :]) ** 2) / np.log(2.0)))
-    offset = level[strong]  # a sensor's constant offset is no disagreement
+    offset = np.fft.rfft(window)[strong]  # a sensor's constant offset is no disagreement
     offset = offset / np.linalg.norm(offset)
     computed, found = (c[strong] - offset * np.vdot(offset, c[strong]) for c in (computed, found))
     size_there = float(np.linalg.norm(computed))
@@ -111,24 +109,3 @@ def derivative_agreement(
     total = float(np.linalg.norm(found))
     rest = float(np.linalg.norm(found - ratio * computed)) / total if total else 1.0
     return Agreement(abs(ratio), float(np.angle(ratio)), rest, noise / size_there)
-
-
-def _spectra(
-    displacement: Array, measured: Array, step: float, order: int
-) -> tuple[NDArray[np.complex128], ...]:
-    """Return windowed transforms: of displacement, its derivative, the measured one and a level."""
-    size = displacement.size
-    turn = 2.0 * np.pi / ((size - 1) * step)
-    angle = turn * step * np.arange(size)
-    # (1 - cos)^2 / 4, with its first two derivatives.
-    window = 0.25 * (1.0 - np.cos(angle)) ** 2
-    slope = 0.5 * turn * (1.0 - np.cos(angle)) * np.sin(angle)
-    bend = 0.5 * turn**2 * (np.sin(angle) ** 2 + np.cos(angle) - np.cos(angle) ** 2)
-    x = displacement - displacement.mean()
-    omega = 2.0 * np.pi * np.fft.rfftfreq(size, step)
-    plain, first = np.fft.rfft(window * x), np.fft.rfft(slope * x)
-    if order == 1:
-        computed = 1j * omega * plain - first
-    else:
-        computed = np.fft.rfft(bend * x) - 2j * omega * first - omega**2 * plain
-    return plain, computed, np.fft.rfft(window * measured), np.fft.rfft(window)

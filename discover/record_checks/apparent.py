@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from discover.record_checks.by_parts import windowed_derivatives
 from discover.record_kind import RecordKind
 from discover.records import Record
 from discover.sine_fit import fit_sine
@@ -61,17 +62,7 @@ def apparent(record: Record, kind: RecordKind) -> Apparent | None:
 
 
 def _from_spectrum(x: Array, force: Array, step: float) -> Apparent:
-    size = x.size
-    turn = 2.0 * np.pi / ((size - 1) * step)
-    angle = turn * step * np.arange(size)
-    window = 0.25 * (1.0 - np.cos(angle)) ** 2
-    slope = 0.5 * turn * (1.0 - np.cos(angle)) * np.sin(angle)
-    bend = 0.5 * turn**2 * (np.sin(angle) ** 2 + np.cos(angle) - np.cos(angle) ** 2)
-    omega = 2.0 * np.pi * np.fft.rfftfreq(size, step)
-    plain = x - x.mean()
-    displacement, first = np.fft.rfft(window * plain), np.fft.rfft(slope * plain)
-    velocity = 1j * omega * displacement - first
-    acceleration = np.fft.rfft(bend * plain) - 2j * omega * first - omega**2 * displacement
+    window, (displacement, velocity, acceleration) = windowed_derivatives(x, step)
     target = np.fft.rfft(window * (force - force.mean()))
     power = np.abs(displacement) ** 2
     strong = power > 1e-4 * power[3:].max()

@@ -86,6 +86,14 @@ def test_a_name_that_predicts_but_makes_records_less_probable_is_ruled_out(asses
     assert step.probabilities["stiffness"] < 1e-6
 
 
+def test_one_error_predicts_nothing_and_evidence_decides(assessed):
+    step = predicting(
+        assessed, ("", -50.0, 0.0, EQUAL[:1]),
+        ("stiffness", -50.0 - np.log(4.0), 0.0, 1e-9 * EQUAL[:1]),
+    )
+    assert step.probabilities == pytest.approx({"": 4 / 5, "stiffness": 1 / 5})
+
+
 def test_where_some_predict_others_have_no_probability(assessed):
     step = predicting(assessed, ("", -50.0, 0.0, EQUAL), ("stiffness", -49.0, 0.0, EQUAL))
     more = Step((*step.candidates, Candidate("end-stop", -40.0, None)), lines=step.lines)
