@@ -18,7 +18,7 @@ from discover.bands.search import Banded, BandSearch, searched
 from discover.bands.variants import Grids, variants_of
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.climb import Place
-from discover.posterior.grow import grown
+from discover.posterior.grow import chosen_again, grown
 from discover.posterior.left_out import is_needed, is_told_from_noise, predicts_better
 from discover.posterior.model import Composite, Evaluator
 from discover.posterior.setup import space_of
@@ -301,7 +301,7 @@ def _with_one_more(way: Found) -> Found | Step:
     open_ids: Collection[str] = [i for i in way.device.extras if i not in there]
     step = _that_predict(now, grown(way.device.assessor, now, open_ids))
     while step.best.id and step.best.assessed is not None:
-        more = _without_superfluous(_joined(way, step))
+        more = _settled(_joined(way, step))
         if any(j.id == step.best.id for j in more.joined):
             return more
         step = _that_predict(now, step.without([step.best.id]))
@@ -323,41 +323,24 @@ def _joined(way: Found, step: Step) -> Found:
     return _searched(way.device, (*old, new), best.assessed.place, best.assessed)
 
 
-def _without_superfluous(way: Found) -> Found:
-    """Return the bands without what has joined and need not, among the bands found with it."""
+def _settled(way: Found) -> Found:
+    """Return the bands without what has joined and need not, and the rest in its best shape.
+
+    Beside what joined later: an offset of every test's own may have joined for what another term
+    explains since.
+    """
     for joined in way.joined:
         now = way.assessed
         own, less = _less(way, joined)
         if not (is_told(now, own) and is_needed(less, now)):
             way = _left_with(way, joined, less)
-        elif len(joined.terms) > 1:
-            way = _in_one(way, joined, less)
+            continue
+        again = chosen_again(way.device.assessor, now, less, joined.terms, joined.log_prior)
+        if again.id and again.assessed is not None:
+            terms = tuple(again.assessed.model.terms[i].fitted for i in again.places)
+            others = [replace(j, terms=terms) if j is joined else j for j in way.joined]
+            way = _searched(way.device, others, again.assessed.place, again.assessed)
     return way
-
-
-def _in_one(way: Found, joined: Joined, less: Assessed) -> Found:
-    """Return the bands with one term in place of several of its kind, where it serves as well.
-
-    An offset of every test's own may have joined for what another term explains since.
-    """
-    size = float(np.mean([t.coefficient for t in joined.terms]))
-    model = less.model.plus(FittedTerm(joined.id, size, _common_shape(joined.terms)))
-    one = way.device.assessor.assess(model, less.place)
-    if is_needed(one, way.assessed):
-        return way
-    simpler = replace(joined, terms=(one.model.terms[-1].fitted,))
-    others = [simpler if j is joined else j for j in way.joined]
-    return _searched(way.device, others, one.place, one)
-
-
-def _common_shape(terms: Sequence[FittedTerm]) -> dict[str, float]:
-    """Return the shape of one term for several: a choice in which they differ is by default."""
-    found = {}
-    for parameter in terms[0].term.parameters:
-        values = [t.shape[parameter.name] for t in terms]
-        alike = parameter.fitted or len(set(values)) == 1
-        found[parameter.name] = float(np.mean(values)) if alike else parameter.default
-    return found
 
 
 def without(way: Found, joined: Joined) -> Found:

@@ -9,7 +9,7 @@ import numpy as np
 
 from discover.gap.baseline import Baseline, in_few_curves
 from discover.posterior.assess import Assessed
-from discover.posterior.grow import grown
+from discover.posterior.grow import chosen_again, grown
 from discover.posterior.left_out import is_less, is_needed, left_out
 from discover.posterior.model import Composite
 from discover.posterior.step import Candidate, Step, ordered
@@ -168,7 +168,7 @@ def search(
         added = last.best
         if not added.id or added.assessed is None:
             break
-        after, dropped = _without_superfluous(mended, rounds, added)
+        after, dropped = _settled(mended, rounds, added)
         effect = added.id
         rounds.append(Round(effect, last, here, after, dropped))
         here = after
@@ -242,15 +242,18 @@ def _accepted(mended: Mended, grown_step: Step) -> tuple[Step, tuple[str, ...]]:
     return step.without(refused), tuple(refused)
 
 
-def _without_superfluous(
+def _settled(
     mended: Mended, rounds: Sequence[Round], added: Candidate
 ) -> tuple[Stage, tuple[str, ...]]:
-    """Return the stage with a candidate, without effects of earlier rounds that it replaces.
+    """Return the stage with a candidate, effects of earlier rounds chosen again beside it.
 
-    One that replaces them predicts what is not fitted no worse than they did.
+    What it replaces is dropped, where it predicts what is not fitted no worse than that did. What
+    it does not, may serve better in another shape.
     """
+    assessor = mended.baseline.assessor
     there, dropped = mended.by(added), list[str]()
-    for name in dict.fromkeys(r.effect for r in rounds if r.effect != added.id):
+    priors = {r.effect: r.step.best.log_prior for r in rounds if r.effect != added.id}
+    for name in priors:
         assessed = there.assessed
         places = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == name]
         if not places:
@@ -258,8 +261,13 @@ def _without_superfluous(
         less = assessed.model
         for place in reversed(places):
             less = less.without(place)
-        without = mended.baseline.assessor.assess(less, assessed.place)
+        without = assessor.assess(less, assessed.place)
         if is_needed(without, assessed):
+            own = [assessed.model.terms[i].fitted for i in places]
+            again = chosen_again(assessor, assessed, without, own, priors[name])
+            if again.id and again.assessed is not None:
+                after = stage(mended.baseline, again.assessed)
+                there = there if _is_worse(there, after) else after
             continue
         after = stage(mended.baseline, without)
         if not _is_worse(mended.here, after):

@@ -18,7 +18,7 @@ from discover.posterior.climb import Place
 from discover.posterior.left_out import predicted
 from discover.posterior.own_share import own_lines
 from discover.posterior.step import Candidate, Step, ordered
-from discover.posterior.weigh import Gain, gains
+from discover.posterior.weigh import Gain, Trials, gains
 from models.constitutive import FittedTerm
 from models.terms import TERMS
 
@@ -29,6 +29,7 @@ _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already
 _NATS = 20.0  # less than that; also of evidence, by which a term may lose beside a remainder
+_Behind = tuple[float, Gain, float]  # by how much a trial gains less than the greatest, and that
 
 
 def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
@@ -55,9 +56,56 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         found += _tried(assessor, now, chosen, len(ids), most)
     if any(c.assessed.quiet for c in found if c.assessed):
         return ordered(Step(tuple(found), assessor.seed))
+    return _by_prediction(found, now, assessor.seed)
+
+
+def chosen_again(
+    assessor: Assessor, now: Assessed, less: Assessed, own: Sequence[FittedTerm], log_prior: float
+) -> Candidate:
+    """Return what a model has of one id: as it is, or chosen again beside all that joined later.
+
+    A fit can't turn one shape into every other, and what was best while another term was missing
+    need not be best beside it.
+
+    Parameters
+    ----------
+    assessor : Assessor
+        Of the records.
+    now, less : Assessed
+        The model, with terms of the id and without them.
+    own : sequence of FittedTerm
+        These terms.
+    log_prior : float
+        Nats, of such terms in one shape.
+
+    Returns
+    -------
+    Candidate
+        Of the same id where another shape is better; else of the model as it is.
+    """
+    here = Candidate("", now.value + log_prior, now)
+    coarse = assessor.evaluator.coarse
+    trials = trials_of(less.space.scales, coarse, [own[0].id], less.model, among=1)
+    least, chosen = here.value - less.value - _NATS, _choice(own)
+    others = [
+        gain for _, gain, _ in _weighed(assessor, less, trials, {}).get(own[0].id, [])
+        if gain.value - gain.trial.log_prior + log_prior > least
+        and _choice(gain.trial.terms) != chosen
+    ]
+    other = _fitted(assessor, less, others) if others else here
+    if other.assessed is None or other is here:
+        return here
+    found = [here, replace(other, value=other.assessed.value + log_prior)]
+    if any(c.assessed.quiet for c in found if c.assessed):
+        return ordered(Step(tuple(found), assessor.seed)).best
+    return _by_prediction(found, now, assessor.seed).best
+
+
+def _by_prediction(found: Sequence[Candidate], now: Assessed, seed: int) -> Step:
+    """Return candidates weighed by how well they predict records that are left out."""
     weighed = [_predicting(c) if c.value > now.value - _NATS else c for c in found]
     parts = next(c.left.size for c in weighed if c.left is not None)
-    return ordered(Step(tuple(weighed), assessor.seed, own_lines(now.predicting, parts)))
+    return ordered(Step(tuple(weighed), seed, own_lines(now.predicting, parts)))
 
 
 def _predicting(candidate: Candidate) -> Candidate:
@@ -76,22 +124,9 @@ def _tried(
     assessor: Assessor, now: Assessed, ids: Sequence[str], among: int, most: dict[Place, float]
 ) -> list[Candidate]:
     """Return some terms beside the model; `most` is kept, what any has gained at some sizes."""
-    space = now.space
-    trials = trials_of(space.scales, assessor.evaluator.coarse, ids, now.model, among=among)
-    if not trials.entries:
-        return []
-    curve = assessor.curve_of(now.model)
-    behind: dict[str, list[tuple[float, Gain, float]]] = {}
-    best = now.predicting  # where more than noise is left, prediction decides
-    for place, local in {
-        best.place: best.local, space.quiet: now.local, now.place: now.local
-    }.items():
-        weighed = gains(space, trials, local, place.sizes(space.own_unit), curve)
-        top = most[place] = max(most.get(place, -np.inf), weighed[0].value)
-        for gain in weighed:
-            behind.setdefault(gain.trial.id, []).append((top - gain.value, gain, top))
-    for one in behind.values():
-        one.sort(key=lambda entry: entry[0])
+    coarse = assessor.evaluator.coarse
+    trials = trials_of(now.space.scales, coarse, ids, now.model, among=among)
+    behind = _weighed(assessor, now, trials, most)
     found: list[Candidate] = []
     for rank, one in enumerate(sorted(behind.values(), key=lambda own: own[0][0])):
         gain = one[0][1]
@@ -102,6 +137,31 @@ def _tried(
         else:
             found.append(_fitted(assessor, now, [g for _, g, _ in one]))
     return found
+
+
+def _weighed(
+    assessor: Assessor, now: Assessed, trials: Trials, most: dict[Place, float]
+) -> dict[str, list[_Behind]]:
+    """Return what trials gain in a straight line, by id, the nearest to the greatest gain first.
+
+    At the sizes that predict best, those of a model that leaves but noise, and the model's own.
+    `most` is kept, the greatest gain at each.
+    """
+    if not trials.entries:
+        return {}
+    space, curve = now.space, assessor.curve_of(now.model)
+    behind: dict[str, list[_Behind]] = {}
+    best = now.predicting  # where more than noise is left, prediction decides
+    for place, local in {
+        best.place: best.local, space.quiet: now.local, now.place: now.local
+    }.items():
+        weighed = gains(space, trials, local, place.sizes(space.own_unit), curve)
+        top = most[place] = max(most.get(place, -np.inf), weighed[0].value)
+        for gain in weighed:
+            behind.setdefault(gain.trial.id, []).append((top - gain.value, gain, top))
+    for one in behind.values():
+        one.sort(key=lambda entry: entry[0])
+    return behind
 
 
 def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:
@@ -136,18 +196,18 @@ def _starting(ranked: Sequence[Gain]) -> list[Gain]:
     shapes = [g for g in ranked if trials[id(g.trial)] is g]
     seen, first, others = set[tuple[object, ...]](), list[Gain](), list[Gain]()
     for gain in shapes:
-        choice = _choice(gain)
+        choice = _choice(gain.trial.terms)
         (others if choice in seen else first).append(gain)
         seen.add(choice)
     chosen = [*first, *others][:_SHAPES]
     return chosen + [g for g in first[_SHAPES:] if _is_plain(g)]
 
 
-def _choice(gain: Gain) -> tuple[object, ...]:
+def _choice(terms: Sequence[FittedTerm]) -> tuple[object, ...]:
     """Return what a fit can't turn into something else: discrete choices, and what is at zero."""
-    term, shape = gain.trial.terms[0].term, gain.trial.terms[0].shape
+    term, shape = terms[0].term, terms[0].shape
     return (
-        len(gain.trial.terms),
+        len(terms),
         *(shape[p.name] if not p.fitted else shape[p.name] == 0.0 for p in term.parameters),
     )
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from discover.posterior.grow import grown
+from discover.posterior.grow import chosen_again, grown
 from discover.posterior.left_out import left_out
 from models.constitutive import FittedTerm
 from tests.discover.gap_data import PLAN
@@ -140,3 +140,32 @@ def test_where_no_candidate_leaves_noise_prediction_decides():
     assert best == "stiffness"
     size = step.best.assessed.predicting.model.terms[2].fitted.coefficient
     assert size == pytest.approx(4e3, rel=0.3)
+
+
+SHAPES = {
+    "one way at a power, where both ways differ": ({"power": 1.5, "side": 1.0}, 500.0),
+    "both ways, as it is": ({"power": 1.0, "side": 0.0}, 60.0),
+}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_shape_that_was_chosen_too_early_is_chosen_again(shape):
+    def law(t, x, v, a):
+        return 120.0 * a + 800.0 * v + 3e3 * v * np.abs(v) + 60.0 * np.abs(v)
+
+    first, size = SHAPES[shape]
+    assessor = assessor_of(rows_of(law, PLAN, cycles=3), friction=False)
+    less = assessor.assess(
+        DEVICE.plus(FittedTerm("quadratic-damping", 3e3)), assessor.space.start
+    )
+    early = FittedTerm("asymmetric-damping", size, first)
+    now = assessor.assess(less.model.plus(early), less.place)
+    again = chosen_again(assessor, now, less, [early], log_prior=-2.0)
+    if first["side"] == 0.0:
+        assert again.assessed is now and again.id == ""
+        return
+    assert again.id == "asymmetric-damping"
+    (term,) = (again.assessed.model.terms[k].fitted for k in again.places)
+    assert term.shape == {"power": 1.0, "side": 0.0}
+    assert term.coefficient == pytest.approx(60.0, rel=0.1)
+    assert again.log_prior == pytest.approx(-2.0)
