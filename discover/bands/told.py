@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from discover.bands.extras import Found
-from discover.posterior.own_share import own_share
+from discover.posterior.left_out import predicted, predicts_best
+from discover.posterior.own_share import own_lines, own_share
 from discover.posterior.spread import idle
 from models.checks import Array
 
 Mask = NDArray[np.bool_]
+_LEAST = 1e-300  # of a probability, so that it has a logarithm
 
 
 def told(found: Found) -> Found:
@@ -32,9 +34,9 @@ def told(found: Found) -> Found:
     if found.quiet:
         return found
     power = own_share(found.assessed.predicting)
-    first, *others = (_at_power(way, power) for way in (found, *found.rivals))
-    alike = [way for way in others if way.banded.bands == first.banded.bands == 1]
-    return _mixed([first, *alike])
+    alike = [way for way in found.rivals if way.banded.bands == found.banded.bands == 1]
+    first, *others = (_at_power(way, power) for way in (found, *alike))
+    return _mixed([first, *others]) if others else first
 
 
 def _at_power(found: Found, power: float) -> Found:
@@ -55,21 +57,23 @@ def _mixed(ways: Sequence[Found]) -> Found:
     """Return the way that holds the most probable structure, its structures weighed over all ways.
 
     What has joined besides is no surer than the structure: two structures, each with what helps it
-    most, may be as probable as each other.
+    most, may predict as well as each other. A way counts by how well it predicts.
     """
-    cores = _cores(ways[0])
+    errors = [predicted(way.assessed) for way in ways]
     prior = np.array([sum(j.log_prior for j in way.joined) for way in ways])
-    weight = {
-        core: np.array([logsumexp(way.banded.by_variant[0, own]) for way in ways]) + prior
-        for core, own in cores.items()
-    }
-    best = max(cores, key=lambda core: logsumexp(weight[core]))
-    chosen = int(np.argmax(weight[best]))
-    by_variant = ways[chosen].banded.by_variant.copy()
-    for core, own in cores.items():
-        if np.isfinite(weight[core][chosen]):
-            by_variant[0, own] += logsumexp(weight[core]) - weight[core][chosen]
-    return _with_values(ways[chosen], by_variant)
+    lines = own_lines(ways[0].assessed.predicting, errors[0].size)
+    chances = predicts_best(errors, prior, lines, ways[0].device.seed)
+    values = np.array([way.banded.by_variant[0] for way in ways])
+    values += (np.log(np.maximum(chances, _LEAST)) - logsumexp(values, axis=1))[:, None]
+    by_variant = np.full((1, values.shape[1]), -np.inf)
+    way_of = np.zeros(values.shape[1], dtype=int)
+    for own in _cores(ways[0]).values():
+        weights = logsumexp(values[:, own], axis=1)
+        way_of[own] = most = int(np.argmax(weights))
+        if np.isfinite(weights[most]):
+            by_variant[0, own] = values[most, own] + logsumexp(weights) - weights[most]
+    best = ways[0].search.of_best_core(by_variant[0])
+    return _with_values(ways[int(way_of[best])], by_variant)
 
 
 def _cores(found: Found) -> dict[str, Mask]:

@@ -64,7 +64,6 @@ def ways():
     return one, other
 
 
-@pytest.mark.xfail(strict=True, reason="a remainder as large as the force leaves it 0.7 nats")
 def test_the_way_that_holds_what_there_is_beside_is_told(ways):
     one, other = ways
     assert [j.id for j in told(replace(other, rivals=(one,))).joined] == ["force-offset"]
