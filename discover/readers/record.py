@@ -21,6 +21,7 @@ from discover.readers.entries import Entry
 from discover.readers.labels import check_labels
 from discover.readers.odd_samples import Place, odd_samples
 from discover.readers.other_times import other_times
+from discover.readers.own_clocks import on_one_clock
 from discover.readers.sampling import Sampled, regular, resampling_text
 from discover.readers.source import Source
 from discover.readers.time_text import time_text
@@ -67,9 +68,12 @@ def read_record(
         On anything that leaves no usable record.
     """
     file = entry.label(part)
+    given = source
+    if entry.step is None:  # a rate replaces whatever times the file has
+        source = on_one_clock(source, names, units)
     columns, place = _asked_columns(source, entry, names, units, file)
     findings = _header_findings(columns, file)
-    if columns.step is None:
+    if columns.step is None and source is given:
         findings += [Finding("note", text, file) for text in other_times(source, names)]
     measured = dict(columns.values)
     time = measured.pop("time")
