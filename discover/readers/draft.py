@@ -158,7 +158,7 @@ def _no_record(folder: str, left_out: Sequence[tuple[str, str]]) -> InputError:
             "files", expected=f"there that can be read ({kinds})", found="none", where=folder
         )
     file, why = left_out[0]
-    more = f" (and {len(left_out) - 1} more files)" if len(left_out) > 1 else ""
+    more = f" (and {len(left_out) - 1} more files or tables)" if len(left_out) > 1 else ""
     timeless = NO_TIME in why
     return (TimeMissing if timeless else InputError)(
         "one file at least",
