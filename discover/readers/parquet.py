@@ -131,7 +131,7 @@ def _numbers(column: Any, header: str, name: str, first: int) -> Array:
         # Counts of nanoseconds since 1970 are beyond what a float holds to the digit.
         counts = _counts(column)
         return _doubles(_counted_from(counts, first) if abs(first) > 2**53 else counts)
-    if not pa.types.is_floating(kind):
+    if not (pa.types.is_floating(kind) or pa.types.is_decimal(kind)):
         raise InputError(header, expected="numeric", found=str(kind), where=name)
     return _doubles(column.cast(pa.float64()))
 

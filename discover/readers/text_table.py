@@ -6,6 +6,7 @@ import io
 import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
@@ -41,6 +42,7 @@ from discover.readers.text_fields import (
     split_all,
 )
 from discover.readers.touching import parted
+from discover.readers.typed_text import as_utf8, without_thousands
 from models.checks import Array, InputError, shown
 
 _LARGE = 16_000_000  # bytes from which threads pay
@@ -71,16 +73,19 @@ def open_text(data: bytes, name: str) -> Book:
         On an empty or binary file or one without a table, and, on reading, rows of the wrong
         length or fields that are not numbers, with their line.
     """
-    labelled = labelled_lines(as_utf8(data, name), name)
+    data = as_utf8(data, name)
+    labelled = labelled_lines(data, name)
     if labelled is not None:
         return single(labelled)
+    data, told = without_thousands(data)
     text, rows, tables = laid_out(data, name)
     parts = []
     for number, layout in enumerate(tables, start=1):
         part = layout.title or f"table {number}" if len(tables) > 1 else ""
         parts.append(_source(text, rows, layout, f"{name} [{part}]" if part else name, part))
     step = stated_step(note for layout in tables for note in layout.notes)
-    return Book(name, gone_on([_with_step(part, step) for part in parts], name))
+    parts = [replace(_with_step(part, step), told=(*told, *part.told)) for part in parts]
+    return Book(name, gone_on(parts, name))
 
 
 def laid_out(data: bytes, name: str) -> tuple[Text, Rows, list[Layout]]:
@@ -101,25 +106,6 @@ def laid_out(data: bytes, name: str) -> tuple[Text, Rows, list[Layout]]:
     data = parted(data, name)
     text, rows = _lines(data, name)
     return text, rows, find_tables(rows) or [_plain_layout(text, rows, name)]
-
-
-def as_utf8(data: bytes, name: str) -> bytes:
-    """Return text without a mark of its encoding, and with one kind of line end.
-
-    Raises
-    ------
-    InputError
-        Where it begins as UTF-16 and is none.
-    """
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        try:
-            data = data.decode("utf-16").encode()
-        except UnicodeDecodeError as error:
-            raise content_error("text in utf-16", str(error.reason), name) from None
-    data = data.removeprefix(b"\xef\xbb\xbf")
-    if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    return data
 
 
 def _with_step(source: Source, step: float | None) -> Source:

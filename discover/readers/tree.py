@@ -155,6 +155,7 @@ def _vectors(leaves: list[Leaf]) -> tuple[list[Leaf], dict[tuple[str, ...], floa
     """Return every column as a leaf of its own, and the steps that scalars state by group."""
     vectors: list[Leaf] = []
     notes: dict[tuple[str, ...], float] = {}
+    named = _column_names(leaves)
     for leaf in leaves:
         array = _numeric(leaf.value)
         if array is None:
@@ -164,9 +165,32 @@ def _vectors(leaves: list[Leaf]) -> tuple[list[Leaf], dict[tuple[str, ...], floa
             if step is not None:
                 notes.setdefault(leaf.path[:-1], step)
             continue
-        for own, column in _columns(leaf.path[-1], array):
+        columns = list(_columns(leaf.path[-1], array))
+        names = named.get((leaf.path[:-1], len(columns)), [own for own, _ in columns])
+        if len(columns) == 1:
+            names = [columns[0][0]]
+        for own, (_, column) in zip(names, columns, strict=True):
             vectors.append(replace(leaf, path=(*leaf.path[:-1], own), value=column))
     return vectors, notes
+
+
+def _column_names(leaves: Sequence[Leaf]) -> dict[tuple[tuple[str, ...], int], list[str]]:
+    """Return the names of a matrix's columns by its group and their number, where texts list them.
+
+    It is the only list of as many texts beside the matrix, as ``{'Time','Force'}``.
+    """
+    found: dict[tuple[tuple[str, ...], int], list[list[str]]] = {}
+    for leaf in leaves:
+        listed = leaf.value if isinstance(leaf.value, list) else []
+        if isinstance(leaf.value, np.ndarray) and leaf.value.dtype.kind in "OUST":
+            listed = leaf.value.ravel().tolist()
+        texts = [own.decode("utf-8", "replace") if isinstance(own, bytes) else own
+                 for own in listed]  # fmt: skip
+        if len(texts) > 1 and all(isinstance(own, str) and own.strip() for own in texts):
+            if len(set(texts)) == len(texts):
+                own_names = [text.strip() for text in texts]
+                found.setdefault((leaf.path[:-1], len(texts)), []).append(own_names)
+    return {key: lists[0] for key, lists in found.items() if len(lists) == 1}
 
 
 def _numeric(value: Any) -> Any:

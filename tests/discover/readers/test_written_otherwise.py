@@ -36,7 +36,7 @@ def drafted(folder: Path, content: str, *options: str) -> Campaign:
 
 def check(found: Campaign, *, atol: float = 1e-3) -> None:
     (record,) = found.records
-    np.testing.assert_allclose(record.time, TIME, atol=1e-9)
+    np.testing.assert_allclose(record.time, TIME, atol=1e-7)
     np.testing.assert_allclose(1e3 * record.displacement, STROKE, atol=atol)
     np.testing.assert_allclose(record.force, LOAD, atol=1e3 * atol)
 
@@ -168,3 +168,51 @@ def test_lines_that_name_each_value(
     broken[99] = broken[99][:12]
     with pytest.raises(InputError, match="line 100: line must be with .* as the others"):
         read(tmp_path, "\n".join(broken) + "\n", toml)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-8-sig"])
+def test_utf_16_with_and_without_its_mark(tmp_path: Path, encoding: str) -> None:
+    content = HEADER.format("\t") + lines("{:.3f}\t{:.4f}\t{:.3f}", TIME, STROKE, LOAD)
+    (tmp_path / "a.txt").write_bytes(content.replace("\n", "\r\n").encode(encoding))
+    (tmp_path / "campaign.toml").write_text('[[records]]\nfile = "a.txt"\n')
+    check(read_campaign(tmp_path))
+
+
+@pytest.mark.parametrize("mark", ["'", "’", "\u202f", "\xa0"])
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1252"])
+def test_thousands_of_the_swiss_and_the_french(tmp_path: Path, mark: str, encoding: str) -> None:
+    if mark == "\u202f" and encoding == "cp1252":
+        pytest.skip("it has no such blank")
+    if mark == "’" and encoding == "cp1252":
+        pytest.skip("a byte that is a letter elsewhere")
+    content = HEADER.format(";") + "".join(
+        f"{t:.3f};{x:.4f};{f'{10.0 * f:,.2f}'.replace(',', mark)}\n"
+        for t, x, f in zip(TIME, STROKE, LOAD, strict=True)
+    )
+    (tmp_path / "a.txt").write_bytes(content.encode(encoding))
+    (tmp_path / "campaign.toml").write_text('[[records]]\nfile = "a.txt"\n')
+    found = read_campaign(tmp_path)
+    np.testing.assert_allclose(found.records[0].force, 10.0 * LOAD, atol=0.01)
+    (finding,) = found.findings
+    assert finding.text.startswith("thousands separators are taken out: 6")
+
+
+def test_minus_signs_of_a_word_processor(tmp_path: Path) -> None:
+    rows = lines("{:.3f};{:.4f};{:.3f}", TIME, STROKE, LOAD).replace("-", "−")
+    check(read(tmp_path, HEADER.format(";") + rows))
+
+
+@pytest.mark.parametrize("offset", ["", "Z", "+02:00"])
+def test_a_clock_that_is_put_back_for_winter_goes_on(tmp_path: Path, offset: str) -> None:
+    begin = np.datetime64("2024-10-27T00:59:58.000")
+    utc = [begin + np.timedelta64(round(1e3 * t), "ms") for t in TIME]
+    if offset == "+02:00":
+        stamps = [
+            f"{t + np.timedelta64(early, 'h')}+0{early}:00"
+            for t in utc
+            for early in [2 if t < np.datetime64("2024-10-27T01:00") else 1]
+        ]
+    else:
+        stamps = [f"{t}{offset}" for t in utc]
+    rows = lines("{},{:.4f},{:.3f}", stamps, STROKE, LOAD)
+    check(read(tmp_path, "time,displacement [mm],force [N]\n" + rows))
