@@ -23,6 +23,7 @@ from discover.readers.units import measures, to_si
 from discover.records import on_grid
 from models.checks import Array, InputError, shown
 
+_BY_PLACE = "; where all are of the same samples, take out the columns of time but one"
 _ROUND = 1e-6  # of a sampling interval, by which a float may miss the end of another clock
 
 
@@ -84,7 +85,8 @@ def on_one_clock(source: Source, names: Mapping[str, str], units: Mapping[str, s
     if differ:
         grid = _shared(source, channels, base)
         _check_fine(source, channels)
-        source = replace(source, told=(*source.told, _told(channels, base, grid)))
+        text = _told(channels, base, grid) + (_BY_PLACE if source.times is None else "")
+        source = replace(source, told=(*source.told, text))
     values = {c.index: _on(c, base, grid) if differ else c.values for c in channels}
     hidden = set(clocks.values()) - {place}
     if place is None:

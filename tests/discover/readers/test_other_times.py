@@ -23,3 +23,15 @@ def test_another_time_of_a_table_is_told(tmp_path: Path, other: np.ndarray, told
         "column 'Time B [s]' is a time too, but another one: 'time [s]' is taken for all channels"
     )
     assert [(f.level, f.text) for f in found.findings] == [("note", text)] * told
+
+
+@pytest.mark.parametrize("rate", [200.0, 100.0])
+def test_a_rate_that_is_not_that_of_the_times_is_told(tmp_path: Path, rate: float) -> None:
+    top = f"Sampling rate: {rate:g} Hz\n"
+    content = top + "time [s],force [kN],displacement [mm]\n" + rows(TIME, FORCE, DISPLACEMENT)
+    found = read_campaign(campaign(tmp_path / "c", content))
+    text = (
+        "the file states a sampling interval of 0.01 s, but its times are every 0.005 s: its times"
+        " are taken"
+    )
+    assert [(f.level, f.text) for f in found.findings] == [("note", text)] * (rate == 100.0)
