@@ -15,7 +15,7 @@ from discover.readers.columns import (
     stated_unit,
 )
 from discover.readers.fastest_motion import fastest_motion
-from discover.readers.names import name_score
+from discover.readers.names import LETTER, name_score
 from discover.readers.one_clock import off_clock
 from discover.readers.sampling import FEWEST_SAMPLES, LONGEST_GAP
 from discover.readers.source import Source
@@ -127,8 +127,7 @@ def _clock_columns(source: Source) -> dict[int, int]:
     named = [
         index
         for index, header in enumerate(source.headers)
-        if name_score(split_header(header)[0], "time") > 0.0
-        and measures(stated_unit(source, index) or "s", "time")
+        if _is_called_time(header, stated_unit(source, index))
     ]
     found: dict[int, int] = {}
     clock, before = None, False
@@ -141,6 +140,17 @@ def _clock_columns(source: Source) -> dict[int, int]:
         if clock is not None:
             found[index] = clock
     return found
+
+
+def _is_called_time(header: str, unit: str | None) -> bool:
+    """Return whether a column is called time; a letter alone is one where it is small, as t1.
+
+    T1 is a temperature.
+    """
+    name = split_header(header)[0].strip()
+    score = name_score(name, "time")
+    said = score > LETTER or unit is not None or name[:1] != "T"
+    return score > 0.0 and said and measures(unit or "s", "time")
 
 
 def _rises(source: Source, index: int) -> bool:

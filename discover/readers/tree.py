@@ -20,7 +20,7 @@ from discover.readers.source import (
     column_pieces,
     column_reader,
 )
-from discover.readers.units import measures, to_si
+from discover.readers.units import is_unit, measures, to_si
 from models.checks import Array, InputError
 
 _WIDEST = 64  # columns of a matrix that may be channels
@@ -155,7 +155,7 @@ def _vectors(leaves: list[Leaf]) -> tuple[list[Leaf], dict[tuple[str, ...], floa
     """Return every column as a leaf of its own, and the steps that scalars state by group."""
     vectors: list[Leaf] = []
     notes: dict[tuple[str, ...], float] = {}
-    named = _column_names(leaves)
+    texts = _column_texts(leaves)
     for leaf in leaves:
         array = _numeric(leaf.value)
         if array is None:
@@ -166,18 +166,24 @@ def _vectors(leaves: list[Leaf]) -> tuple[list[Leaf], dict[tuple[str, ...], floa
                 notes.setdefault(leaf.path[:-1], step)
             continue
         columns = list(_columns(leaf.path[-1], array))
-        names = named.get((leaf.path[:-1], len(columns)), [own for own, _ in columns])
-        if len(columns) == 1:
-            names = [columns[0][0]]
-        for own, (_, column) in zip(names, columns, strict=True):
-            vectors.append(replace(leaf, path=(*leaf.path[:-1], own), value=column))
+        listed = texts.get((leaf.path[:-1], len(columns)), []) if len(columns) > 1 else []
+        names = [t for t in listed if not all(map(is_unit, t))] or listed[:1]
+        units = [t for t in listed if t not in names]
+        plain = [own for own, _ in columns]
+        called = names[0] if len(names) == 1 else plain
+        stated = units[0] if len(units) == 1 else [leaf.unit] * len(plain)
+        for own, unit, (_, column) in zip(called, stated, columns, strict=True):
+            path = (*leaf.path[:-1], own)
+            vectors.append(replace(leaf, path=path, value=column, unit=leaf.unit or unit))
     return vectors, notes
 
 
-def _column_names(leaves: Sequence[Leaf]) -> dict[tuple[tuple[str, ...], int], list[str]]:
-    """Return the names of a matrix's columns by its group and their number, where texts list them.
+def _column_texts(
+    leaves: Sequence[Leaf],
+) -> dict[tuple[tuple[str, ...], int], list[list[str]]]:
+    """Return lists of texts by their group and length: a matrix's names, and perhaps its units.
 
-    It is the only list of as many texts beside the matrix, as ``{'Time','Force'}``.
+    They stand beside the matrix, as ``{'Time','Force'}`` and ``{'s','kN'}``.
     """
     found: dict[tuple[tuple[str, ...], int], list[list[str]]] = {}
     for leaf in leaves:
@@ -187,10 +193,8 @@ def _column_names(leaves: Sequence[Leaf]) -> dict[tuple[tuple[str, ...], int], l
         texts = [own.decode("utf-8", "replace") if isinstance(own, bytes) else own
                  for own in listed]  # fmt: skip
         if len(texts) > 1 and all(isinstance(own, str) and own.strip() for own in texts):
-            if len(set(texts)) == len(texts):
-                own_names = [text.strip() for text in texts]
-                found.setdefault((leaf.path[:-1], len(texts)), []).append(own_names)
-    return {key: lists[0] for key, lists in found.items() if len(lists) == 1}
+            found.setdefault((leaf.path[:-1], len(texts)), []).append([t.strip() for t in texts])
+    return found
 
 
 def _numeric(value: Any) -> Any:

@@ -94,6 +94,14 @@ def test_a_list_of_names_beside_a_matrix_names_its_columns(
         read(tmp_path, "a.mat", toml)
 
 
+def test_a_list_of_units_beside_one_of_names(tmp_path: Path) -> None:
+    data = np.column_stack([1e3 * TIME, STROKE, LOAD])
+    texts = {"names": ["time", "displacement", "force"], "units": ["ms", "mm", "N"]}
+    listed = {key: np.array(own, dtype=object) for key, own in texts.items()}
+    savemat(tmp_path / "a.mat", {"data": data, **listed})
+    check(read(tmp_path, "a.mat"))
+
+
 def test_decimals_of_a_data_base(tmp_path: Path) -> None:
     columns = {"time [s]": TIME, "displacement [mm]": STROKE.round(4), "force [N]": LOAD.round(3)}
     exact = {name: pa.array(values).cast(pa.decimal128(12, 4)) for name, values in columns.items()}

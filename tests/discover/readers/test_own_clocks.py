@@ -217,3 +217,10 @@ def test_init_finds_them(
     write(tmp_path, (FAST, FAST + 0.1))
     assert main(["init", str(tmp_path)]) == 0, capsys.readouterr().err
     check(read_campaign(tmp_path), 0.1, 9.995)
+
+
+def test_a_temperature_that_rises_is_no_clock(tmp_path: Path) -> None:
+    table = side_by_side((FAST, FAST))[["Time A [s]", "force [kN]", "displacement [mm]"]]
+    table.insert(2, "T1", 20.0 + FAST)
+    table.to_csv(tmp_path / "a.csv", index=False)
+    assert read(tmp_path, "Time A").findings == ()
