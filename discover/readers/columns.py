@@ -219,7 +219,7 @@ def read_columns(
         values["time"] = raw_time
     inside = within(values["time"], span)
     for index, column in zip(found.values(), raw, strict=True):
-        _check_finite(source, index, column, inside)
+        check_finite(source, index, column, inside)
     notes = [source.notes[index] for index in found.values() if index in source.notes]
     notes += _calibrations(source, found, chosen)
     unused = _unused(source, found)
@@ -332,8 +332,14 @@ def _calibrations(
     return told
 
 
-def _check_finite(source: Source, index: int, column: Array, inside: NDArray[np.bool_]) -> None:
-    """Refuse a value inside the wanted span that is no finite number, as the file has it."""
+def check_finite(source: Source, index: int, column: Array, inside: NDArray[np.bool_]) -> None:
+    """Refuse a value inside the wanted span that is no finite number, as the file has it.
+
+    Raises
+    ------
+    InputError
+        With the place of the first such value.
+    """
     bad = np.flatnonzero(~(np.abs(column) < LARGEST) & inside)
     if not bad.size:
         return

@@ -18,6 +18,7 @@ from discover.readers.fastest_motion import fastest_motion
 from discover.readers.formats import OPENERS
 from discover.readers.guess import Guess, TableGuess
 from discover.readers.long_record import read_record_of_any_length
+from discover.readers.own_clocks import on_one_clock
 from discover.readers.record import MAY_LACK
 from discover.readers.source import Source
 from discover.readers.time_text import time_text
@@ -157,7 +158,7 @@ def _no_record(folder: str, left_out: Sequence[tuple[str, str]]) -> InputError:
             "files", expected=f"there that can be read ({kinds})", found="none", where=folder
         )
     file, why = left_out[0]
-    more = f" (and {len(left_out) - 1} more files)" if len(left_out) > 1 else ""
+    more = f" (and {len(left_out) - 1} more files or tables)" if len(left_out) > 1 else ""
     timeless = NO_TIME in why
     return (TimeMissing if timeless else InputError)(
         "one file at least",
@@ -209,8 +210,11 @@ class _Reading:
 
     def _first_time(self, entry: Entry) -> float:
         """Return the file's first time, s, from which a clock's record counts."""
+        source = self.source
+        if entry.step is None:
+            source = on_one_clock(source, self.names, self.units)
         columns = read_columns(
-            self.source, names=self.names, units=self.units, may_lack=MAY_LACK, step=entry.step
+            source, names=self.names, units=self.units, may_lack=MAY_LACK, step=entry.step
         )
         return float(columns.values["time"][0])
 

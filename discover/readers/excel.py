@@ -5,7 +5,8 @@ from __future__ import annotations
 import datetime
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -34,19 +35,24 @@ def open_excel(data: bytes, name: str) -> Book:
     optional_package("openpyxl", extra="xlsx", name=name)
     check_unpacked(data, "an Excel workbook", name)
     try:
-        sheets = pd.read_excel(
-            io.BytesIO(data), sheet_name=None, header=None, engine="openpyxl", dtype=object
-        )
+        with pd.ExcelFile(io.BytesIO(data), engine="openpyxl") as book:
+            sheets = pd.read_excel(book, sheet_name=None, header=None, dtype=object)
+            hidden = {s.title for s in book.book.worksheets if s.sheet_state != "visible"}
     except Exception as error:  # the library lets errors of many kinds through
         raise content_error("an Excel workbook", error, name) from None
     cells = {str(sheet): frame.to_numpy(dtype=object) for sheet, frame in sheets.items()}
     parts = [s for sheet, values in cells.items() for s in _sources(name, sheet, values)]
+    parts = [
+        replace(s, told=(*s.told, f"the sheet {shown(sheet)} is hidden in the workbook"))
+        if (sheet := _sheet_of(s.part, cells)) in hidden else s
+        for s in parts
+    ]  # fmt: skip
     if not parts:
         raise content_error("a table of samples", f"none in {len(sheets)} sheets", name)
 
     def cut(part: str, text: str) -> Source:
         span = cell_range(text)
-        sheet = next(s for s in sorted(cells, key=len, reverse=True) if part.startswith(s))
+        sheet = _sheet_of(part, cells)
         found = [] if span is None else _sources(name, sheet, cells[sheet][span])
         if len(found) != 1:
             raise InputError(
@@ -56,6 +62,11 @@ def open_excel(data: bytes, name: str) -> Book:
         return found[0]
 
     return Book(name, tuple(parts), key="sheet", cells=cut)
+
+
+def _sheet_of(part: str, sheets: Iterable[str]) -> str:
+    """Return the sheet that a table is of."""
+    return next(s for s in sorted(sheets, key=len, reverse=True) if part.startswith(s))
 
 
 def cell_range(text: str) -> tuple[slice, slice] | None:

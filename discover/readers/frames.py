@@ -103,11 +103,14 @@ def _columns(frame: Any, name: str) -> tuple[tuple[str, ...], list[Array], dict[
             found=type(frame).__name__, where=name,
         )  # fmt: skip
     arrays, own = [], {}
+    zero = None  # of all time stamps, so that columns that began apart stay so
     for position, key in enumerate(keys):
         values = np.asarray(frame[key])
         if values.dtype.kind in "mM":
             own[position] = "s"
-            values = (values - values[:1]) / np.timedelta64(1, "s")
+            stamped = values.dtype.kind == "M" and values.size
+            zero = values[:1] if stamped and zero is None else zero
+            values = (values - (zero if stamped else values[:1])) / np.timedelta64(1, "s")
         arrays.append(_numbers(values))
     return tuple(str(key).strip() for key in keys), arrays, own
 

@@ -10,7 +10,7 @@ import numpy as np
 from discover.readers.columns import QUANTITIES, split_header, stated_unit
 from discover.readers.names import CANONICAL, LETTER, WORD, name_score, of_command
 from discover.readers.source import Source
-from discover.readers.units import measures, to_si
+from discover.readers.units import measures, to_si, weight_unit
 from models.checks import Array, InputError
 
 SURE, LIKELY, UNSURE = "sure", "likely", "unsure"
@@ -43,7 +43,7 @@ class Guess:
     others: tuple[str, ...] = ()
     """Headers that are as likely."""
     unit_named: bool = False
-    """Whether its header ends in the unit, as ``disp_mm``: no statement, but no guess at values."""
+    """Whether its header ends in the unit, as ``disp_mm`` or ``Force lbs``: no guess at values."""
     unit_told: bool = False
     """Whether the user says the unit."""
 
@@ -112,9 +112,10 @@ def _column(source: Source, quantity: str, taken: set[int]) -> Guess | None:
     for index, header in enumerate(source.headers):
         unit = stated_unit(source, index)
         fitting = unit is not None and measures(unit, QUANTITIES[quantity])
-        if index in taken or (unit is not None and not fitting):
-            continue
         name = name_score(split_header(header)[0], quantity)
+        weighed = quantity == "force" and name > 0.0 and weight_unit(unit or "") is not None
+        if index in taken or (unit is not None and not (fitting or weighed)):
+            continue
         if source.roles.get(quantity) == index:
             name = CANONICAL
         elif quantity != "time" and name_score(header, "time") and _is_rising(source, index):
@@ -154,7 +155,8 @@ def _guess(
         reasons.append("others are as likely")
     unit = stated_unit(source, index)
     stated = unit is not None and measures(unit, QUANTITIES[quantity])
-    named = None if stated else _named_unit(header, quantity)
+    weight = weight_unit(unit or "") if quantity == "force" else None
+    named = None if stated else weight or _named_unit(header, quantity)
     return Guess(
         quantity,
         header,
@@ -168,9 +170,18 @@ def _guess(
 
 
 def _named_unit(header: str, quantity: str) -> str | None:
-    """Return the unit that a header ends in after an underscore, or None."""
-    name, _, last = header.strip().rpartition("_")
-    return last if name and last and measures(last, QUANTITIES[quantity]) else None
+    """Return the unit that a header ends in after a blank or an underscore, or None.
+
+    A force that is said to be in a unit of mass is that of its weight.
+    """
+    name, last = split_header(header)
+    if last is None:
+        name, _, last = header.strip().replace("_", " ").rpartition(" ")
+    if not (name and last):
+        return None
+    if quantity == "force" and (weight := weight_unit(last)) is not None:
+        return weight
+    return last if measures(last, QUANTITIES[quantity]) else None
 
 
 def _values(source: Source, index: int) -> Array | None:

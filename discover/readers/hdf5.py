@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -30,8 +31,9 @@ def open_hdf5(data: bytes | Path, name: str, *, joint: str = "/") -> Book:
 
     Of a path, long vectors are read when they are asked for, whole or in pieces.
 
-    An attribute ``units`` of a data set is its unit; a scalar or an attribute may state the
-    sampling rate. What lies in other files is not followed.
+    An attribute ``units`` of a data set is its unit; ``scale_factor``, ``add_offset`` and
+    ``_FillValue`` say what its counts stand for. A scalar or an attribute may state the sampling
+    rate. What lies in other files is not followed.
 
     Raises
     ------
@@ -85,7 +87,8 @@ class _Walk:
             return
         numbers = item.ndim == 1 and item.dtype.kind in "iuf"
         if self.path is not None and numbers and item.size > LONG:
-            column = LongVector(item.size, _reader(self.h5py, self.path, item.name))
+            packing = _packing(item)
+            column = LongVector(item.size, _reader(self.h5py, self.path, item.name, packing))
             yield Leaf(path, column, unit=_unit(item), step=self._step(item))
             return
         if item.size > MOST_VALUES:
@@ -98,10 +101,14 @@ class _Walk:
             return
         step = self._step(item)
         if item.dtype.names:  # a table, as pandas and PyTables write it
-            for field in item.dtype.names:
-                yield Leaf((*path, field), item[field], step=step)
+            units = _units(item, len(item.dtype.names))
+            for field, unit in zip(item.dtype.names, units, strict=True):
+                yield Leaf((*path, field), item[field], unit=unit, step=step)
             return
-        yield Leaf(path, item[()], unit=_unit(item), step=step)
+        values = item[()]
+        if isinstance(values, np.ndarray) and values.dtype.kind in "iuf":
+            values = _unpacked(values, _packing(item))
+        yield Leaf(path, values, unit=_unit(item), step=step)
 
     def _step(self, item: Any) -> float | None:
         """Return the sampling interval that a data set's attributes state."""
@@ -110,12 +117,41 @@ class _Walk:
         )
 
 
-def _reader(h5py: Any, path: Path, name: str) -> Callable[[slice], np.ndarray[Any, Any]]:
+@dataclass(frozen=True)
+class _Packing:
+    """How values are kept, as NetCDF's conventions (CF, 8.1) say."""
+
+    factor: float
+    """Value of one count."""
+    offset: float
+    """Value of no counts."""
+    fill: float | None
+    """What stands for a value that is missing; None for nothing."""
+
+
+def _packing(item: Any) -> _Packing:
+    """Return how a data set's attributes say that its values are kept."""
+    stated = {key: float(value.ravel()[0]) for key, value in _scalars(item)}
+    fill = stated.get("_FillValue", stated.get("missing_value"))
+    return _Packing(stated.get("scale_factor", 1.0), stated.get("add_offset", 0.0), fill)
+
+
+def _unpacked(values: np.ndarray[Any, Any], how: _Packing) -> np.ndarray[Any, Any]:
+    """Return what values stand for, NaN for one that is missing."""
+    missing = values == how.fill if how.fill is not None else np.zeros(values.shape, dtype=bool)
+    if (how.factor, how.offset) == (1.0, 0.0) and not missing.any():
+        return values
+    return np.where(missing, np.nan, values * how.factor + how.offset)
+
+
+def _reader(
+    h5py: Any, path: Path, name: str, packing: _Packing
+) -> Callable[[slice], np.ndarray[Any, Any]]:
     """Return what reads a part of a data set."""
 
     def part(inside: slice) -> np.ndarray[Any, Any]:
         with h5py.File(path, "r") as file:
-            return np.asarray(file[name][inside])
+            return _unpacked(np.asarray(file[name][inside]), packing)
 
     return part
 
@@ -129,10 +165,23 @@ def _scalars(item: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _unit(item: Any) -> str:
+    """Return a data set's unit, "" for none; of ``seconds since 2024-05-17`` that of the counts."""
     for key in _UNIT_NAMES:
         value = item.attrs.get(key)
         if isinstance(value, bytes):
             value = value.decode("utf-8", "replace")
         if isinstance(value, str):
-            return value.strip()
+            return value.partition(" since ")[0].strip()
     return ""
+
+
+def _units(item: Any, count: int) -> list[str]:
+    """Return the units of a table's fields, where an attribute lists them."""
+    for key in _UNIT_NAMES:
+        listed = [
+            own.decode("utf-8", "replace") if isinstance(own, bytes) else str(own)
+            for own in np.ravel(item.attrs.get(key, ()))
+        ]
+        if len(listed) == count:
+            return [own.strip() for own in listed]
+    return [""] * count

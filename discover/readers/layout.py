@@ -368,3 +368,14 @@ def above_text(place: str, text: str) -> str:
     "line 1 is left out: '500 2.5' is no sample, as the time begins below it"
     """
     return f"{place} is left out: {shown(text[:_SHOWN])} is no sample, as the time begins below it"
+
+
+def empty_text(place: str, text: str) -> str:
+    """Return what to tell of a row below the header that is as wide as a sample and holds none.
+
+    Examples
+    --------
+    >>> empty_text("line 2", "-----,-----")
+    "line 2 is left out: '-----,-----' holds no number"
+    """
+    return f"{place} is left out: {shown(text.strip()[:_SHOWN])} holds no number"

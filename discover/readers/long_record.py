@@ -10,8 +10,9 @@ import numpy as np
 
 from discover.readers.columns import find_column, read_columns
 from discover.readers.entries import Entry
+from discover.readers.own_clocks import on_one_clock
 from discover.readers.record import MAY_LACK, read_record
-from discover.readers.source import LONG, Source
+from discover.readers.source import LONG, Source, some_times
 from discover.record_kind import classify
 from discover.records import Finding, LongRecord, Piece, Record
 from models.checks import Array, InputError
@@ -45,7 +46,10 @@ def read_record_of_any_length(
     rows = source.rows or 0
     if rows <= LONG:
         return whole(source, entry)
-    record, findings, read = whole(first_part(source), entry)
+    begin = first_part(source)
+    if entry.step is None and on_one_clock(begin, names, units) is not begin:
+        return whole(source, entry)
+    record, findings, read = whole(begin, entry)
     file = record.file
     sine = record.displacement is not None and classify(record).kind == "sine"
     if not sine:
@@ -94,8 +98,9 @@ def _part(source: Source, first: int, last: int) -> Source:
         return [np.concatenate(parts) for parts in zip(*pieces(indices), strict=True)]
 
     return replace(
-        source, read=read, pieces=pieces, rows=last - first, place=lambda row: place(row + first)
-    )
+        source, read=read, pieces=pieces, rows=last - first, place=lambda row: place(row + first),
+        times=source.times and some_times(source, first, last),
+    )  # fmt: skip
 
 
 def _in_memory(source: Source, columns: Sequence[Array], begin: int) -> Source:

@@ -16,14 +16,8 @@ from discover.readers.cut_row import BEFORE, cut_text, is_cut
 from discover.readers.lvm import is_lvm, open_lvm
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import LONG, Book, Source, single
-from discover.readers.text_table import (
-    SPACES,
-    fields_of,
-    laid_out,
-    left_out_lines,
-    open_text,
-    split_line,
-)
+from discover.readers.text_fields import SPACES, split_line
+from discover.readers.text_table import fields_of, laid_out, left_out_lines, open_text
 from models.checks import Array
 
 _HEAD = 2**20  # bytes that show the layout

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -10,7 +10,6 @@ import numpy as np
 from discover.readers.content import content_error
 from discover.readers.cut_row import BEFORE, cut_text, is_cut
 from discover.readers.numerals import value
-from discover.readers.one_clock import off_clock
 from discover.readers.source import Book, Source, column_reader
 from models.checks import Array, InputError, shown
 
@@ -144,7 +143,6 @@ def _source(
     timed = style != "No"
     wanted = ([0] if timed else []) + channels
     columns = list(_columns(segment, wanted, decimal, name))
-    _check_clocks(segment, names, columns, decimal, name)
     headers = tuple(names[i] for i in wanted)
     # Values in a segment's header stand in the columns of the channels, the first one left out.
     stated = {i: unit for i, unit in enumerate(units, start=1) if unit}
@@ -161,22 +159,27 @@ def _source(
         roles={"time": 0} if timed else {},
         step=None if timed else _number(segment.notes, "Delta_X", decimal),
         start=0.0 if timed else _number(segment.notes, "X0", decimal) or 0.0,
+        times=_own_times(segment, wanted, decimal, name, timed=timed) if style != "One" else None,
     )
 
 
-def _check_clocks(
-    segment: _Segment, names: Sequence[str], columns: Sequence[Array], decimal: str, name: str
-) -> None:
-    """Refuse channels with times of their own that are not those of the first channel."""
-    clocks = [i for i, own in enumerate(names) if own == "X_Value"][1:]
-    for index, times in zip(clocks, _columns(segment, clocks, decimal, name), strict=True):
-        if off_clock(columns[0], times).size:
-            apart = float(np.abs(times - columns[0]).max())
-            channel = names[index + 1] if index + 1 < len(names) else names[index]
-            raise InputError(
-                channel, expected="sampled at the times of the first channel",
-                found=f"times up to {apart:.6g} s off; save channels with one clock", where=name,
-            )  # fmt: skip
+def _own_times(
+    segment: _Segment, wanted: Sequence[int], decimal: str, name: str, *, timed: bool
+) -> Callable[[int, slice], Array | None]:
+    """Return what tells the times of a channel: those to its left, or of its own increment."""
+    clocks = [i for i, own in enumerate(segment.names) if own == "X_Value"]
+
+    def times(index: int, part: slice) -> Array | None:
+        at = wanted[index]
+        if timed:
+            before = [clock for clock in clocks if clock < at]
+            return next(_columns(segment, before[-1:], decimal, name))[part] if before else None
+        step = _number(segment.notes, "Delta_X", decimal, at - 1)
+        start = _number(segment.notes, "X0", decimal, at - 1) or 0.0
+        rows = range(len(segment.rows))[part]
+        return None if step is None else start + step * np.asarray(rows, dtype=np.float64)
+
+    return times
 
 
 def _columns(segment: _Segment, wanted: Sequence[int], decimal: str, name: str) -> Iterator[Array]:
@@ -194,7 +197,9 @@ def _columns(segment: _Segment, wanted: Sequence[int], decimal: str, name: str) 
         yield column
 
 
-def _number(notes: Mapping[str, list[str]], key: str, decimal: str) -> float | None:
-    text = (notes.get(key) or [""])[0]
+def _number(
+    notes: Mapping[str, list[str]], key: str, decimal: str, at: int = 0
+) -> float | None:
+    text = [*notes.get(key, []), *[""] * (at + 1)][at]
     found = value(text, decimal) if text else None
     return found if found is not None and np.isfinite(found) and found != 0.0 else None

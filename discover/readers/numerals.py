@@ -17,7 +17,7 @@ _GROUPED = re.compile(
 )  # with thousands separators
 _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d?)-(\d\d?)[ T]|(\d\d?)[./](\d\d?)[./](\d{4}) )?"
-    r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9}|:\d{3})?)(?:Z|[+-]\d\d:?\d\d|\s?([AaPp])\.?[Mm]\.?)?"
+    r"(\d\d?):(\d\d):(\d\d(?:[.,]\d{1,9}|:\d{3})?)(?:Z|([+-])(\d\d):?(\d\d)|\s?([AaPp])\.?[Mm]\.?)?"
 )
 _CLOCK_FORM = re.compile(
     r"(?:[ymd./-]+[ t])?h{1,2}:[mn]{1,2}:s{1,2}(?:[.,:]?[0fsmuz]{1,9})?(?: ?(?:tt|am/pm))?"
@@ -69,7 +69,8 @@ def is_number(field: str) -> bool:
 def clock_seconds(text: str) -> float | None:
     """Return the seconds since midnight, or since 2000 where there is a date; None of other text.
 
-    The clock is a local one: an offset from universal time, as ``+01:00``, is passed over.
+    An offset from universal time, as ``+01:00``, is taken off where there is a date, so that a
+    clock that is put back for winter goes on; without a date it is passed over.
 
     Examples
     --------
@@ -77,13 +78,14 @@ def clock_seconds(text: str) -> float | None:
     (86400.25, 86401.0)
     >>> clock_seconds("12:00:01 AM"), clock_seconds("1:00:00.5 pm"), clock_seconds("00:00:01:250")
     (1.0, 46800.5, 1.25)
+    >>> clock_seconds("2000-01-01 03:00:01+02:00"), clock_seconds("2000-01-01 02:00:01+01:00")
+    (3601.0, 3601.0)
     """
     match = _CLOCK.fullmatch(text)
     if match is None:
         return None
-    year, month, day, own_day, own_month, own_year, hours, minutes, seconds, half = (
-        match.groups()
-    )
+    year, month, day, own_day, own_month, own_year, hours, minutes, seconds = match.groups()[:9]
+    sign, off_hours, off_minutes, half = match.groups()[9:]
     days = 0
     try:
         if year:
@@ -96,6 +98,8 @@ def clock_seconds(text: str) -> float | None:
         return None
     hour = int(hours) if half is None else int(hours) % 12 + 12 * (half in "Pp")
     rest = 3600 * hour + 60 * int(minutes) + float(seconds.translate(_DECIMAL))
+    if sign and (year or own_year):
+        rest -= float(f"{sign}1") * (3600 * int(off_hours) + 60 * int(off_minutes))
     return 86400 * days + rest
 
 

@@ -41,6 +41,7 @@ def open_parquet(data: bytes | Path, name: str) -> Book:
     stated = {i: _unit(schema.field(i).metadata or {}) for i in range(len(headers))}
     units = {i: "s" if _is_time(schema.types[i]) else unit for i, unit in stated.items()}
     known = {i: unit for i, unit in units.items() if unit}
+    zeros = _zeros(data, schema)
 
     def read(indices: Sequence[int]) -> list[Array]:
         names = [schema.names[i] for i in indices]
@@ -52,12 +53,13 @@ def open_parquet(data: bytes | Path, name: str) -> Book:
         places = [_position(i, schema.names, table.column_names) for i in indices]
         columns = [table.column(place) for place in places]
         return [
-            _numbers(c, headers[i], name, _first(c)) for i, c in zip(indices, columns, strict=True)
+            _numbers(c, headers[i], name, zeros.get(i, _first(c)))
+            for i, c in zip(indices, columns, strict=True)
         ]
 
     def pieces(indices: Sequence[int]) -> Iterator[list[Array]]:
         names = [schema.names[i] for i in indices]
-        firsts: dict[int, int] = {}
+        firsts = dict(zeros)
         try:
             with _opened(data) as file:
                 for batch in file.iter_batches(PIECE, columns=names):
@@ -78,6 +80,26 @@ def _unit(metadata: Mapping[bytes, bytes]) -> str:
     named = {key.lower(): value for key, value in metadata.items()}
     found = named.get(b"unit") or named.get(b"units") or b""
     return found.decode("utf-8", "replace").strip()
+
+
+def _zeros(data: bytes | Path, schema: Any) -> dict[int, int]:
+    """Return the count from which time stamps are read where several columns have such.
+
+    Columns of one kind begin with the first of them, so that times that began apart stay so.
+    """
+    stamps = [i for i, kind in enumerate(schema.types) if pa.types.is_timestamp(kind)]
+    if len(stamps) < 2:
+        return {}
+    with _opened(data) as file:
+        batch = next(file.iter_batches(1, columns=[schema.names[i] for i in stamps]), None)
+    if batch is None:
+        return {}
+    row = pa.Table.from_batches([batch])
+    found: dict[Any, int] = {}
+    for i in stamps:
+        column = row.column(_position(i, schema.names, row.column_names))
+        found.setdefault(schema.types[i], _first(column))
+    return {i: found[schema.types[i]] for i in stamps}
 
 
 def _position(index: int, names: list[str], read: Sequence[str]) -> int:
@@ -109,7 +131,7 @@ def _numbers(column: Any, header: str, name: str, first: int) -> Array:
         # Counts of nanoseconds since 1970 are beyond what a float holds to the digit.
         counts = _counts(column)
         return _doubles(_counted_from(counts, first) if abs(first) > 2**53 else counts)
-    if not pa.types.is_floating(kind):
+    if not (pa.types.is_floating(kind) or pa.types.is_decimal(kind)):
         raise InputError(header, expected="numeric", found=str(kind), where=name)
     return _doubles(column.cast(pa.float64()))
 

@@ -20,7 +20,9 @@ from discover.readers.consistency import derivative_agreement
 from discover.readers.entries import Entry
 from discover.readers.labels import check_labels
 from discover.readers.odd_samples import Place, odd_samples
+from discover.readers.one_clock import NEAR
 from discover.readers.other_times import other_times
+from discover.readers.own_clocks import on_one_clock
 from discover.readers.sampling import Sampled, regular, resampling_text
 from discover.readers.source import Source
 from discover.readers.time_text import time_text
@@ -67,20 +69,17 @@ def read_record(
         On anything that leaves no usable record.
     """
     file = entry.label(part)
-    columns, place = _asked_columns(source, entry, names, units, file)
-    findings = _header_findings(columns, file)
-    if columns.step is None:
-        findings += [Finding("note", text, file) for text in other_times(source, names)]
+    table, findings = _on_one_clock(source, entry, names, units, file)
+    columns, place = _asked_columns(table, entry, names, units, file)
+    findings += _header_findings(columns, file)
+    told = other_times(source, names) if columns.step is None and table is source else []
+    findings += [Finding("note", text, file) for text in (*told, *_other_rate(source, columns))]
     measured = dict(columns.values)
     time = measured.pop("time")
     sampled = regular(
-        time,
-        measured,
-        raw_time=columns.raw_time,
-        resample="displacement" in measured,
-        where=file,
-        place=place,
-    )
+        time, measured, raw_time=columns.raw_time, resample="displacement" in measured,
+        where=file, place=place,
+    )  # fmt: skip
     _check_varying(measured, file)
     findings += _value_findings(time, measured, place, file)
     step = float(sampled.time[-1] - sampled.time[0]) / (sampled.time.size - 1)
@@ -88,10 +87,37 @@ def read_record(
     findings += disagreeing
     record = _record(entry, file, sampled, values)
     if sampled.uneven:
-        record, told = _with_fitting_times(record, sampled, time, measured)
-        findings.append(told)
+        record, resampled = _with_fitting_times(record, sampled, time, measured)
+        findings.append(resampled)
     findings.extend(check_labels(record))
     return record, findings, columns.units
+
+
+def _on_one_clock(
+    source: Source, entry: Entry, names: Mapping[str, str], units: Mapping[str, str], file: str
+) -> tuple[Source, list[Finding]]:
+    """Return a table with its channels on one clock, and what to tell where they had several."""
+    if entry.step is not None:  # a rate replaces whatever times the file has
+        return source, []
+    found = on_one_clock(source, names, units)
+    # A format says which times are a channel's; in a table its place says so.
+    level = "warning" if source.times is None else "note"
+    told = [Finding(level, text, file) for text in found.told[len(source.told) :]]
+    return (replace(found, told=source.told) if told else found), told
+
+
+def _other_rate(source: Source, columns: Columns) -> list[str]:
+    """Return what to tell where a file states another rate than its times have."""
+    time = columns.values["time"]
+    if columns.step is not None or source.step is None or time.size < 2:
+        return []
+    step = float(np.median(np.diff(time)))
+    if abs(step - source.step) <= NEAR * source.step:
+        return []
+    return [
+        f"the file states a sampling interval of {source.step:.6g} s, but its times are every"
+        f" {step:.6g} s: its times are taken"
+    ]
 
 
 def _asked_columns(

@@ -64,6 +64,9 @@ class Source:
     """What to tell of a column where it is read, by its index among the headers."""
     told: tuple[str, ...] = ()
     """What to tell of the table."""
+    times: Callable[[int, slice], Array | None] | None = None
+    """Times of some of a column's own samples, s, None where they are not known; no function where
+    the format has none beside a channel."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,16 @@ class Book:
     """The table in a part's range of cells, of a workbook."""
     stacks: dict[tuple[str, str, bool], list[Source]] = field(default_factory=dict)
     """Tests that stand below each other in its tables, kept once they were looked for."""
+
+
+def some_times(source: Source, first: int, last: int) -> Callable[[int, slice], Array | None]:
+    """Return what `Source.times` of some of its rows is."""
+
+    def times(index: int, part: slice) -> Array | None:
+        rows = range(first, last)[part]
+        return None if source.times is None else source.times(index, slice(rows.start, rows.stop))
+
+    return times
 
 
 def single(source: Source) -> Book:

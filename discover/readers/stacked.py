@@ -11,7 +11,7 @@ import numpy as np
 
 from discover.readers.columns import find_column, is_place, split_header
 from discover.readers.sampling import FEWEST_SAMPLES
-from discover.readers.source import Source
+from discover.readers.source import Source, some_times
 from models.checks import Array, InputError
 
 _TEST = re.compile(
@@ -178,4 +178,5 @@ def _rows(source: Source, first: int, last: int, label: str) -> Source:
         place=lambda row: source.place(row + first),
         cell=None if cell is None else lambda row, index: cell(row + first, index),
         part=part, rows=None, pieces=None,
+        times=source.times and some_times(source, first, last),
     )  # fmt: skip

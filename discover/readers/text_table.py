@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
-import csv
 import io
 import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
@@ -17,7 +15,9 @@ import pyarrow.csv as pa_csv
 from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
 from discover.readers.cut_row import cut_text
-from discover.readers.layout import Layout, Rows, above_text, find_tables
+from discover.readers.gone_on import gone_on
+from discover.readers.labelled import labelled_lines
+from discover.readers.layout import Layout, Rows, above_text, empty_text, find_tables
 from discover.readers.line_kinds import line_kinds
 from discover.readers.notation import (
     Notation,
@@ -28,49 +28,26 @@ from discover.readers.notation import (
 )
 from discover.readers.numerals import (
     DAY,
-    EMPTY,
     clock_seconds,
-    is_number,
     past_midnight,
     value,
 )
 from discover.readers.sampling_note import stated_step
-from discover.readers.source import Book, Source
+from discover.readers.source import Book, Source, single
+from discover.readers.text_fields import (
+    MARKS,
+    SPACES,
+    Text,
+    find_delimiter,
+    split_all,
+)
+from discover.readers.touching import parted
+from discover.readers.typed_text import as_utf8, without_thousands
 from models.checks import Array, InputError, shown
 
 _LARGE = 16_000_000  # bytes from which threads pay
-SPACES = " "
-"""Stands for any run of blanks between columns."""
-_DELIMITERS = ("\t", ";", ",", SPACES)
-_MARKS = (b"#", b"%", b"//", b"'")
 _FORTRAN = re.compile(rb"(\.\d{0,20})[Dd]([+-]\d\d)")  # the exponent of a double
 _SAMPLE = 2**16  # bytes in which it shows
-_TRIED = 60  # lines that show what separates columns
-_BRACKETS = re.compile(r"\[[^\[\]]*\]|\([^()]*\)|\"[^\"]*\"")
-
-
-@dataclass(frozen=True)
-class Text:
-    """A file's lines."""
-
-    data: bytes
-    """With one kind of line end."""
-    starts: np.ndarray
-    """(N + 1,) where lines begin, then the end."""
-    delimiter: str
-    """Between columns."""
-
-    def line(self, row: int) -> str:
-        """Return a line's text."""
-        return _decoded(self.data[self.starts[row] : self.starts[row + 1]]).rstrip("\n")
-
-    def fields(self, row: int) -> list[str]:
-        """Return a line's fields, of a comment without its mark."""
-        text = self.line(row)
-        mark = next((m.decode() for m in _MARKS if text.lstrip().encode().startswith(m)), "")
-        if mark:
-            text = text.lstrip().removeprefix(mark).strip()
-        return split_line(text, self.delimiter)
 
 
 def open_text(data: bytes, name: str) -> Book:
@@ -96,13 +73,19 @@ def open_text(data: bytes, name: str) -> Book:
         On an empty or binary file or one without a table, and, on reading, rows of the wrong
         length or fields that are not numbers, with their line.
     """
+    data = as_utf8(data, name)
+    labelled = labelled_lines(data, name)
+    if labelled is not None:
+        return single(labelled)
+    data, told = without_thousands(data)
     text, rows, tables = laid_out(data, name)
     parts = []
     for number, layout in enumerate(tables, start=1):
         part = layout.title or f"table {number}" if len(tables) > 1 else ""
         parts.append(_source(text, rows, layout, f"{name} [{part}]" if part else name, part))
     step = stated_step(note for layout in tables for note in layout.notes)
-    return Book(name, tuple(_with_step(part, step) for part in parts))
+    parts = [replace(_with_step(part, step), told=(*told, *part.told)) for part in parts]
+    return Book(name, gone_on(parts, name))
 
 
 def laid_out(data: bytes, name: str) -> tuple[Text, Rows, list[Layout]]:
@@ -113,20 +96,14 @@ def laid_out(data: bytes, name: str) -> tuple[Text, Rows, list[Layout]]:
     InputError
         On an empty or binary file or one without a table.
     """
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        try:
-            data = data.decode("utf-16").encode()
-        except UnicodeDecodeError as error:
-            raise content_error("text in utf-16", str(error.reason), name) from None
-    data = data.removeprefix(b"\xef\xbb\xbf")
-    if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    data = as_utf8(data, name)
     if not data or data.isspace():
         raise content_error("a header line and samples", "an empty file", name)
     if _FORTRAN.search(data[:_SAMPLE]):
         data = _FORTRAN.sub(rb"\1E\2", data)  # of which lengths and places stay as they are
     if b"\0" in data[:4096]:
         raise content_error("text", "binary data", name)
+    data = parted(data, name)
     text, rows = _lines(data, name)
     return text, rows, find_tables(rows) or [_plain_layout(text, rows, name)]
 
@@ -135,13 +112,6 @@ def _with_step(source: Source, step: float | None) -> Source:
     if source.step is not None or step is None:
         return source
     return Source(**{**source.__dict__, "step": step})
-
-
-def _decoded(raw: bytes) -> str:
-    try:
-        return raw.decode("utf-8")
-    except UnicodeDecodeError:
-        return raw.decode("latin-1")
 
 
 def _lines(data: bytes, name: str) -> tuple[Text, Rows]:
@@ -154,73 +124,16 @@ def _lines(data: bytes, name: str) -> tuple[Text, Rows]:
     numeric, blank = line_kinds(data, starts)
     comment = np.zeros(numeric.size, dtype=bool)
     for row in np.flatnonzero(~numeric & ~blank):
-        comment[row] = data[starts[row] : starts[row] + 200].lstrip().startswith(_MARKS)
+        comment[row] = data[starts[row] : starts[row] + 200].lstrip().startswith(MARKS)
     filled = np.flatnonzero(~blank & ~comment)
     if not filled.size and not comment.any():
         raise content_error("a header line and samples", "an empty file", name)
     text = Text(data, starts, "")
     samples = np.flatnonzero(numeric)
-    delimiter = _delimiter(text, samples if samples.size > 1 else filled, numbers=samples.size > 1)
+    numbers = samples.size > 1
+    delimiter = find_delimiter(text, samples if numbers else filled, numbers=numbers)
     text = Text(data, starts, delimiter)
     return text, Rows(numeric, blank, comment, text.fields, unended=not data.endswith(b"\n"))
-
-
-def _delimiter(text: Text, rows: np.ndarray, *, numbers: bool) -> str:
-    """Return what splits lines of numbers, or else any lines, into equally many fields."""
-    some = np.linspace(0, rows.size - 1, min(rows.size, _TRIED)).astype(int)
-    lines = [text.line(int(row)) for row in rows[some]]
-    if not numbers:
-        lines = [_BRACKETS.sub("", line) for line in lines]
-    for delimiter in _DELIMITERS if numbers else _DELIMITERS[:3]:
-        split = [split_line(line, delimiter) for line in lines]
-        widths = [len(fields) for fields in split]
-        usual = max(set(widths), key=widths.count, default=0)
-        same = [f for f in split if len(f) == usual]
-        if usual < 2 or (numbers and len(same) < 0.8 * len(split)):
-            continue
-        if not numbers or sum(all(map(_is_cell, fields)) for fields in same) >= 0.8 * len(same):
-            return delimiter
-    return ","
-
-
-def _is_cell(field: str) -> bool:
-    return is_number(field) or field.lower() in EMPTY
-
-
-def split_line(line: str, delimiter: str) -> list[str]:
-    """Return a line's fields."""
-    if delimiter == SPACES:
-        return _split_blanks(line)
-    if '"' not in line:
-        return [field.strip() for field in line.split(delimiter)]
-    try:
-        return [field.strip() for field in next(csv.reader([line], delimiter=delimiter), [])]
-    except csv.Error:  # a field beyond what the module takes
-        return [field.strip() for field in line.split(delimiter)]
-
-
-def _split_all(body: memoryview, delimiter: str) -> Iterator[list[str]]:
-    """Return the fields of all lines, comments too."""
-    lines = io.StringIO(_decoded(bytes(body)))
-    if delimiter == SPACES:
-        yield from (line.split() for line in lines)
-        return
-    with contextlib.suppress(csv.Error):  # which reading, line by line, tells with its place
-        yield from csv.reader(lines, delimiter=delimiter)
-
-
-def _split_blanks(line: str) -> list[str]:
-    """Return fields between blanks, a unit in brackets with the name before it."""
-    fields: list[str] = []
-    for word in line.split():
-        inside = fields and fields[-1].count("[") + fields[-1].count("(") > (
-            fields[-1].count("]") + fields[-1].count(")")
-        )
-        if inside or (fields and word[0] in "[("):
-            fields[-1] += f" {word}"
-        else:
-            fields.append(word)
-    return fields
 
 
 def _plain_layout(text: Text, rows: Rows, name: str) -> Layout:
@@ -249,7 +162,7 @@ def _source(text: Text, rows: Rows, layout: Layout, name: str, part: str) -> Sou
     width = len(headers)
     written: Mapping[int, Notation] = {}
     if may_have_thousands(body, text.delimiter):
-        written = notations(_split_all(body, text.delimiter))
+        written = notations(split_all(body, text.delimiter))
 
     def read(indices: Sequence[int]) -> list[Array]:
         own = [written.get(i, Notation(decimal)) for i in indices]
@@ -287,7 +200,16 @@ def left_out_lines(text: Text, layout: Layout) -> tuple[str, ...]:
     """Return what to tell of lines that are left out, though they look like samples."""
     above = [above_text(f"line {row + 1}", text.line(row)) for row in layout.above]
     cut = () if layout.cut is None else (cut_text(layout.cut + 1, text.line(layout.cut)),)
-    return (*above, *cut)
+    between = range(layout.first if layout.header is None else layout.header + 1, layout.first)
+    empty = [row for row in between if _is_empty(text.fields(row), len(layout.headers))]
+    marked = [empty_text(f"line {row + 1}", text.line(row)) for row in empty]
+    return (*above, *marked, *cut)
+
+
+def _is_empty(fields: Sequence[str], width: int) -> bool:
+    """Return whether a row is as wide as the samples, and each field only marks like dashes."""
+    whole = len(fields) == width > 1 and all(fields)
+    return whole and not any(c.isalnum() for field in fields for c in field)
 
 
 def fields_of(text: Text, layout: Layout) -> tuple[tuple[str, ...], str]:

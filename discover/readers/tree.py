@@ -20,6 +20,7 @@ from discover.readers.source import (
     column_pieces,
     column_reader,
 )
+from discover.readers.units import is_unit, measures, to_si
 from models.checks import Array, InputError
 
 _WIDEST = 64  # columns of a matrix that may be channels
@@ -44,6 +45,8 @@ class Leaf:
     """s, the time of the first sample that goes with `step`."""
     role: str = ""
     """The quantity, where the format itself tells it; "" where it does not."""
+    began: float = 0.0
+    """s, by which its clock began after the first one of the file."""
 
 
 def tree_book(name: str, leaves: list[Leaf], *, joint: str = "/") -> Book:
@@ -152,6 +155,7 @@ def _vectors(leaves: list[Leaf]) -> tuple[list[Leaf], dict[tuple[str, ...], floa
     """Return every column as a leaf of its own, and the steps that scalars state by group."""
     vectors: list[Leaf] = []
     notes: dict[tuple[str, ...], float] = {}
+    texts = _column_texts(leaves)
     for leaf in leaves:
         array = _numeric(leaf.value)
         if array is None:
@@ -161,11 +165,36 @@ def _vectors(leaves: list[Leaf]) -> tuple[list[Leaf], dict[tuple[str, ...], floa
             if step is not None:
                 notes.setdefault(leaf.path[:-1], step)
             continue
-        for own, column in _columns(leaf.path[-1], array):
-            vectors.append(
-                Leaf((*leaf.path[:-1], own), column, leaf.unit, leaf.step, leaf.start, leaf.role)
-            )
+        columns = list(_columns(leaf.path[-1], array))
+        listed = texts.get((leaf.path[:-1], len(columns)), []) if len(columns) > 1 else []
+        names = [t for t in listed if not all(map(is_unit, t))] or listed[:1]
+        units = [t for t in listed if t not in names]
+        plain = [own for own, _ in columns]
+        called = names[0] if len(names) == 1 else plain
+        stated = units[0] if len(units) == 1 else [leaf.unit] * len(plain)
+        for own, unit, (_, column) in zip(called, stated, columns, strict=True):
+            path = (*leaf.path[:-1], own)
+            vectors.append(replace(leaf, path=path, value=column, unit=leaf.unit or unit))
     return vectors, notes
+
+
+def _column_texts(
+    leaves: Sequence[Leaf],
+) -> dict[tuple[tuple[str, ...], int], list[list[str]]]:
+    """Return lists of texts by their group and length: a matrix's names, and perhaps its units.
+
+    They stand beside the matrix, as ``{'Time','Force'}`` and ``{'s','kN'}``.
+    """
+    found: dict[tuple[tuple[str, ...], int], list[list[str]]] = {}
+    for leaf in leaves:
+        listed = leaf.value if isinstance(leaf.value, list) else []
+        if isinstance(leaf.value, np.ndarray) and leaf.value.dtype.kind in "OUST":
+            listed = leaf.value.ravel().tolist()
+        texts = [own.decode("utf-8", "replace") if isinstance(own, bytes) else own
+                 for own in listed]  # fmt: skip
+        if len(texts) > 1 and all(isinstance(own, str) and own.strip() for own in texts):
+            found.setdefault((leaf.path[:-1], len(texts)), []).append([t.strip() for t in texts])
+    return found
 
 
 def _numeric(value: Any) -> Any:
@@ -212,6 +241,7 @@ def _source(
     part: str,
 ) -> Source:
     """Return some leaves as a table, a step stated beside them before one of their group."""
+    leaves = _from_the_first(leaves)
     headers = tuple(joint.join(leaf.path[len(below) :]) for leaf in leaves)
     waves = [leaf for leaf in leaves if leaf.step is not None]
     usual = _usual_wave(waves)
@@ -221,7 +251,7 @@ def _source(
     return Source(
         name,
         headers,
-        _together(column_reader(name, headers, columns), name, leaves, usual),
+        _together(column_reader(name, headers, columns), name, leaves),
         part=part,
         units={i: leaf.unit for i, leaf in enumerate(leaves) if leaf.unit},
         roles={role: named.index(role) for role in named if role and named.count(role) == 1},
@@ -229,7 +259,48 @@ def _source(
         start=usual.start if usual else 0.0,
         rows=max(long, default=None),
         pieces=column_pieces(name, headers, columns) if long else None,
+        times=_own_times(leaves),
     )
+
+
+def _from_the_first(leaves: Sequence[Leaf]) -> list[Leaf]:
+    """Return leaves whose times count from when the first one's clock began."""
+    zero = min(leaf.began for leaf in leaves)
+    found = []
+    for leaf in leaves:
+        late = leaf.began - zero
+        if late and leaf.role == "time":
+            leaf = replace(leaf, value=np.asarray(leaf.value) + late)
+        found.append(replace(leaf, start=leaf.start + late if leaf.step else leaf.start))
+    return found
+
+
+def _own_times(leaves: Sequence[Leaf]) -> Callable[[int, slice], Array | None]:
+    """Return what tells a column's times: of its waveform, or of the clock in its group."""
+    clocks = _clocks(leaves)
+
+    def times(index: int, part: slice) -> Array | None:
+        leaf = leaves[index]
+        if leaf.step is not None:
+            rows = range(leaf.value.size)[part]
+            return np.asarray(leaf.start + leaf.step * np.arange(rows.start, rows.stop))
+        clock = clocks.get(leaf.path[:-1])
+        if clock is None:
+            return None
+        unit = leaves[clock].unit
+        values = np.array(leaves[clock].value[part], dtype=np.float64)
+        return to_si(values, unit, "time") if measures(unit, "time") else values
+
+    return times
+
+
+def _clocks(leaves: Sequence[Leaf]) -> dict[tuple[str, ...], int]:
+    """Return the place of the column of time in each group that has one."""
+    return {
+        leaf.path[:-1]: i
+        for i, leaf in enumerate(leaves)
+        if leaf.role == "time" or name_score(leaf.path[-1], "time") >= LETTER
+    }
 
 
 def _usual_wave(waves: Sequence[Leaf]) -> Leaf | None:
@@ -240,19 +311,19 @@ def _usual_wave(waves: Sequence[Leaf]) -> Leaf | None:
     return min(waves, key=lambda wave: (-counts[wave.step, wave.start], wave.step or 0.0))
 
 
-def _together(read: _Read, name: str, leaves: Sequence[Leaf], usual: Leaf | None) -> _Read:
-    """Return what reads columns, and refuses those that are not sampled as the usual one is."""
+def _together(read: _Read, name: str, leaves: Sequence[Leaf]) -> _Read:
+    """Return what reads columns, and refuses those that are not sampled as the first of them is."""
 
     def checked(indices: Sequence[int]) -> list[Array]:
-        for leaf in (leaves[i] for i in indices):
-            if usual is None or usual.step is None or leaf.step is None:
-                continue
-            late = abs(leaf.start - usual.start) > NEAR * usual.step
-            if late or abs(leaf.step - usual.step) > _SAME * usual.step:
+        waves = [leaf for leaf in (leaves[i] for i in indices) if leaf.step is not None]
+        for leaf in waves[1:]:
+            first, step = waves[0], waves[0].step or 1.0
+            late = abs(leaf.start - first.start) > NEAR * step
+            if late or abs((leaf.step or 1.0) - step) > _SAME * step:
                 raise InputError(
                     "/".join(leaf.path),
-                    expected=f"sampled as {'/'.join(usual.path)} is, every {usual.step:.6g} s from"
-                    f" {usual.start:.6g} s on",
+                    expected=f"sampled as {'/'.join(first.path)} is, every {step:.6g} s from"
+                    f" {first.start:.6g} s on",
                     found=f"every {leaf.step:.6g} s from {leaf.start:.6g} s on; save channels of"
                     " several rates at one rate, and from one time on",
                     where=name,
@@ -265,11 +336,7 @@ def _together(read: _Read, name: str, leaves: Sequence[Leaf], usual: Leaf | None
 
 def _check_clocks(read: _Read, name: str, leaves: Sequence[Leaf], indices: Sequence[int]) -> None:
     """Refuse columns of groups whose own columns of time do not agree."""
-    clocks = {
-        leaf.path[:-1]: i
-        for i, leaf in enumerate(leaves)
-        if leaf.role == "time" or name_score(leaf.path[-1], "time") >= LETTER
-    }
+    clocks = _clocks(leaves)
     groups = {leaves[i].path[:-1]: "/".join(leaves[i].path) for i in indices}
     own = [(clocks[group], column) for group, column in groups.items() if group in clocks]
     if len(own) < 2:

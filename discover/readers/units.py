@@ -46,6 +46,14 @@ _OTHER = {
 _UNIT = re.compile(
     r"(?!.*[\d.]\s*(?:\^|\*\*))(?!.*(?:\^|\*\*)\s*[+-]?\d\d)(?:[^\W\d]|[°%(]|1?\s*/)[\w\s*/^().+-]*"
 )
+_USUAL = {
+    "time": "s ms us ns min",
+    "length": "m mm cm um in ft",
+    "speed": "m/s mm/s cm/s in/s ft/s",
+    "acceleration": "m/s^2 m/s² mm/s^2 mm/s² in/s^2 ft/s^2",
+    "force": "N kN mN MN lbf kgf kip",
+    "temperature": "degC degF °C °F K",
+}  # as laboratories write them, of which displays and printers may write the case otherwise
 _ANGLES = ("radian", "degree", "revolution", "revolutions_per_minute", "revolutions_per_second")
 
 
@@ -79,11 +87,16 @@ def _conversion(text: str, kind: str) -> _Conversion:
         raise ValueError(f"{text!r}, which is not a unit")
     registry = _registry()
     unit = _parsed(name)
+    target = SI_UNITS[kind]
+    wanted = registry.parse_units(target).dimensionality
+    if unit is None or unit.dimensionality != wanted:
+        usual = [own for own in _USUAL.get(kind, "").split() if own.lower() == name.lower()]
+        if len(usual) > 1:
+            raise ValueError(f"{text!r}, which may be {' or '.join(usual)}")
+        unit = _parsed(usual[0]) if usual else unit
     if unit is None:
         raise ValueError(f"{text!r}, which is not a known unit")
-    dimension = unit.dimensionality
-    target = SI_UNITS[kind]
-    if dimension != registry.parse_units(target).dimensionality:
+    if unit.dimensionality != wanted:
         slip = kind == "acceleration" and str(unit) in ("gram", "gauss")
         hint = " (standard gravity is g_0)" if slip else ""
         raise ValueError(f"{text!r}, a unit of {_dimension(unit)}{hint}")
@@ -148,6 +161,8 @@ def measures(text: str, kind: str) -> bool:
     --------
     >>> measures("kN", "force"), measures("kN", "length"), measures("Force", "force")
     (True, False, False)
+    >>> measures("KN", "force"), measures("MM", "length"), measures("mn", "force")
+    (True, True, False)
     """
     try:
         _conversion(text, kind)
@@ -246,6 +261,18 @@ def quantity(value: object, kind: str, *, name: str, where: str) -> float:
     return si
 
 
+def weight_unit(text: str) -> str | None:
+    """Return the force that one of a unit of mass weighs, as a unit; None of any other text.
+
+    Examples
+    --------
+    >>> weight_unit("LBS"), weight_unit("kg"), weight_unit("N")
+    ('lbs*g_0', 'kg*g_0', None)
+    """
+    written = [name for name in (text, text.lower()) if measures(f"{name}*g_0", "force")]
+    return f"{written[0]}*g_0" if written and measures(text, "mass") else None
+
+
 def is_unit(text: str) -> bool:
     """Return whether text is the name of a unit, of whatever kind.
 
@@ -255,4 +282,7 @@ def is_unit(text: str) -> bool:
     (True, True, False, False)
     """
     tidy = _tidy(text)
-    return len(tidy) <= 20 and bool(_UNIT.fullmatch(tidy)) and _parsed(tidy) is not None
+    if len(tidy) > 20 or not _UNIT.fullmatch(tidy):
+        return False
+    usual = (own.lower() for units in _USUAL.values() for own in units.split())
+    return _parsed(tidy) is not None or tidy.lower() in usual

@@ -13,7 +13,6 @@ import openpyxl
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
-from asammdf import MDF, Signal
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
@@ -167,29 +166,6 @@ def test_texts_of_a_sheet_that_can_be_read_in_two_ways_are_refused(tmp_path: Pat
         _campaign(tmp_path, '[[records]]\nfile = "a.xlsx"\n')
 
 
-@pytest.mark.parametrize(("step", "start"), [(0.01, 0.0), (0.005, 0.2)])
-def test_channels_that_are_not_sampled_together_are_refused(
-    tmp_path: Path, step: float, start: float
-) -> None:
-    def wave(step: float, start: float) -> dict[str, float]:
-        return {"wf_increment": step, "wf_start_offset": start}
-
-    with TdmsWriter(str(tmp_path / "a.tdms")) as writer:
-        writer.write_segment(
-            [
-                ChannelObject("all", "force", LOAD, {"unit_string": "kN", **wave(0.005, 0.0)}),
-                ChannelObject("all", "pump", LOAD, wave(0.005, 0.0)),
-                ChannelObject("all", "displacement", STROKE, wave(step, start)),
-            ]
-        )
-    message = (
-        f"all/displacement must be sampled as all/force is, every 0.005 s from 0 s on, got every"
-        f" {step:g} s from {start:g} s on"
-    )
-    with pytest.raises(InputError, match=message):
-        _campaign(tmp_path, '[[records]]\nfile = "a.tdms"\n')
-
-
 def test_units_that_parquet_and_daqmx_keep_beside_a_channel(tmp_path: Path) -> None:
     fields = (("time", "s", TIME), ("displacement", "mm", STROKE), ("force", "kN", LOAD))
     schema = pa.schema([pa.field(n, pa.float64(), metadata={"unit": u}) for n, u, _ in fields])
@@ -327,32 +303,6 @@ def test_labview_segments_are_tests_and_a_library_reads_the_same(tmp_path: Path)
         np.testing.assert_allclose(record.displacement, 1e-3 * data[:, 1], rtol=1e-12, atol=1e-12)
         np.testing.assert_allclose(record.force, 1e3 * data[:, 2], rtol=1e-12, atol=1e-12)
 
-
-def test_labview_channels_with_times_of_their_own_are_refused(tmp_path: Path) -> None:
-    lines = _lvm("Multi", 1.0).splitlines(keepends=True)
-    begin = next(i for i, line in enumerate(lines) if line.startswith("X_Value")) + 1
-    for i in range(begin, len(lines)):
-        x, weg, _, kraft = lines[i].split("\t")
-        lines[i] = "\t".join([x, weg, f"{float(x) + 0.1:.6f}", kraft])
-    (tmp_path / "a.lvm").write_text("".join(lines))
-    message = r"a.lvm: Kraft must be sampled at the times of the first channel, got times up to 0.1"
-    with pytest.raises(InputError, match=message):
-        _campaign(tmp_path, NAMED + '[[records]]\nfile = "a.lvm"\n')
-
-
-@pytest.mark.parametrize("late", [0.0, 0.1])
-def test_groups_with_clocks_of_their_own_have_to_agree(tmp_path: Path, late: float) -> None:
-    with MDF(version="4.10") as file:
-        file.append([Signal(LOAD, TIME, unit="kN", name="force")], acq_name="A")
-        file.append([Signal(STROKE, TIME + late, unit="mm", name="displacement")], acq_name="B")
-        file.save(tmp_path / "a.mf4", overwrite=True)
-    toml = '[columns]\ntime = "A/time"\n[[records]]\nfile = "a.mf4"\n'
-    if not late:
-        _check(_campaign(tmp_path, toml), 1.0)
-        return
-    message = r"B/displacement must be sampled at the times of A/force, got times up to 0.1 off"
-    with pytest.raises(InputError, match=message):
-        _campaign(tmp_path, toml)
 
 
 def test_labview_segments_that_go_on_in_time_are_one_test(tmp_path: Path) -> None:

@@ -179,3 +179,28 @@ def test_init_leaves_apart_what_is_not_plain(
     assert main(["init", "."]) == 2
     told = capsys.readouterr().err
     assert "test1_disp.csv + test1_force.csv: time must be the same in every file" in told
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("Run{}LoadCell", "Run{}LVDT"),
+        ("test_0{}_load_cell_A", "test_0{}_stroke"),
+        ("20240517_loadcell_run{}", "20240517_run{}_displacement"),
+    ],
+)
+def test_init_joins_names_that_differ_in_several_words(
+    tmp_path: Path, names: tuple[str, str]
+) -> None:
+    for run, factor in enumerate(FACTORS, start=1):
+        for name, own in zip(names, (FORCE, 10.0 * DISPLACEMENT), strict=True):
+            content = text("time [s],value", TIME, factor * own)
+            (tmp_path / f"{name.format(run)}.csv").write_text(content)
+    assert main(["init", str(tmp_path), "--unit", "force=kN", "--unit", "displacement=0.1 mm"]) == 0
+    check(tmp_path, *FACTORS)
+
+
+def test_init_does_not_join_the_channels_of_two_tests(tmp_path: Path) -> None:
+    (tmp_path / "Run1_force.csv").write_text(FORCE_FILE)
+    (tmp_path / "Run2_stroke.csv").write_text(STROKE_FILE)
+    assert main(["init", str(tmp_path)]) == 2
