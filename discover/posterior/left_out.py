@@ -122,8 +122,10 @@ def is_told_from_noise(assessed: Assessed) -> bool:
 def is_needed(without: Assessed, with_it: Assessed) -> bool:
     """Tell whether a model is better with a term: by evidence where one leaves but noise.
 
-    Where none does, by records left out.
+    Where none does, by records left out. A model whose force is not finite is never better.
     """
+    if not np.isfinite(without.value):
+        return True
     if without.quiet or with_it.quiet:
         return with_it.value >= without.value
     return predicts_better(without, with_it)
