@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.posterior.climb import Place, climb
+from discover.posterior.evidence import Solved
 from discover.posterior.local import Judged, Local, fitted, judged, local_of
 from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Evaluator
@@ -71,7 +72,7 @@ class Assessed:
         What no term explains is not known in other records. Numbers that lean on a remainder are
         right only beside it; these are the ones by which the terms alone come closest.
         """
-        if self.place.remainder <= _SMALL or not self.local.numbers:
+        if self.place.remainder <= _SMALL or not self.local.numbers or self.value == -np.inf:
             return self
         local, place, space = self.local, self.place, self.space
         visited: dict[Place, float] = {}
@@ -123,6 +124,8 @@ class Assessor:
         """Return a model fitted and assessed, from sizes to start from."""
         place = start
         local = local_of(self.space, self.evaluator, model, None if refit else ())
+        if not np.all(np.isfinite(local.force)):
+            return self._impossible(local, place)
         for number in range(_ROUNDS):
             before, space, curve = local, self.behind(local.model), self.curve_of(local.model)
             local = fitted(space, self.evaluator, local, place.sizes(space.own_unit), curve)
@@ -141,6 +144,16 @@ class Assessor:
         return Assessed(
             local, place, float(logsumexp(list(visited.values()))), best, visited,
             is_quiet(visited), space, self,
+        )
+
+    def _impossible(self, local: Local, place: Place) -> Assessed:
+        """Return a model whose force is not finite, as a joint that shakes itself apart."""
+        count = len(local.numbers)
+        nothing = Solved(np.array(-np.inf), np.zeros(count), np.diag(local.spread**2))
+        judged_so = Judged(-np.inf, 1.0, nothing, np.zeros((count, count)), np.zeros(count))
+        return Assessed(
+            local, place, -np.inf, judged_so, {place: -np.inf}, quiet=False, space=self.space,
+            assessor=self,
         )
 
     def behind(self, model: Composite) -> Space:

@@ -84,6 +84,8 @@ def chosen_again(
         Of the same id where another shape is better; else of the model as it is.
     """
     here = Candidate("", now.value + log_prior, now)
+    if not np.isfinite(less.value):
+        return here
     coarse = assessor.evaluator.coarse
     trials = trials_of(less.space.scales, coarse, [own[0].id], less.model, among=1)
     least, chosen = here.value - less.value - _NATS, _choice(own)

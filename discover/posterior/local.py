@@ -120,8 +120,6 @@ def judged(local: Local, beside: Comparison, sizes: Sizes) -> Judged:
     found = solved(gram, side, local.spread, local.sign, normal)
     k = int(np.argmax(found.log_evidence))
     value = float(np.logaddexp.reduce(found.log_evidence)) - float(np.log(at.scales.size))
-    if np.isnan(value):  # a force that is not finite is no model of the records
-        value = -np.inf
     one = Solved(found.log_evidence[k], found.mean[k], found.covariance[k])
     return Judged(value, float(at.scales[k]), one, gram[k], side[k])
 
@@ -143,8 +141,6 @@ def fitted(
     if not here.numbers:
         return here
     best = _density(space, here, sizes, curve)
-    if not np.isfinite(best):  # its force is not finite: there is no way from here
-        return here
     for _ in range(iterations):
         answer = judged(here, here.beside(space, curve), sizes)
         wanted = _within_bounds(here, answer, space.scales)

@@ -64,6 +64,8 @@ class Joint:
 def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> Array:
     """Return the force (N,) with a joint before a device whose own force is `force`.
 
+    It is not finite where the device's own is too great to have a square.
+
     Parameters
     ----------
     force : ndarray, shape (N,)
@@ -82,6 +84,8 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
     rigid = rigid + behind * np.tanh(v / reversal) + spring * x
     if not np.any(rigid):
         return force
+    if not np.isfinite(rigid @ rigid):
+        return np.full_like(force, np.nan)  # beyond all numbers: there is no such device
     most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
     resistance = viscous + quadratic * float(np.abs(v).max())
     carried_along = _ADDED_MASS * _size(rigid) / _size(motion.acceleration)

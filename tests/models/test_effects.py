@@ -350,3 +350,9 @@ def test_a_valve_s_lag_moves_the_force_evenly():
     steps = np.diff(means)
     assert np.all(steps * np.sign(steps.sum()) > 0.0)
     assert steps.max() - steps.min() < np.abs(steps.mean())
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_a_joint_before_a_force_beyond_all_numbers_is_no_error():
+    found = force(FittedTerm("viscous-damping", 1e308), FittedTerm("series-compliance", 1e-6))
+    assert not np.all(np.isfinite(found))

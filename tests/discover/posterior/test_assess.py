@@ -9,6 +9,7 @@ from scipy.special import logsumexp
 from discover.motion_fit import observe_all
 from discover.posterior.assess import is_quiet
 from discover.posterior.climb import Place
+from discover.posterior.left_out import is_needed
 from discover.posterior.model import Number
 from discover.rows import record_rows
 from models.constitutive import FittedTerm
@@ -265,3 +266,14 @@ def test_a_record_of_many_lines_counts_no_more_than_one_of_few_where_terms_alone
     for number, expected in zip(found.numbers, alike, strict=True):
         assert found.value(number) == pytest.approx(expected, rel=0.05)
     assert alike[1] < 600.0  # of 300 and 800
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_a_model_whose_force_is_not_finite_is_none():
+    """As of a joint that shakes itself apart: no search ends in it, and a sound one is needed."""
+    assessor = assessor_of(rows_of(plain, APART, cycles=3), friction=False)
+    sound = assessor.assess(DEVICE, assessor.space.start)
+    broken = assessor.assess(model_of(inertia=1e308, viscous_damping=1e308), sound.place)
+    assert broken.value == -np.inf
+    assert broken.predicting is broken
+    assert is_needed(broken, sound)
