@@ -329,18 +329,26 @@ def _settled(way: Found) -> Found:
     Beside what joined later: an offset of every test's own may have joined for what another term
     explains since.
     """
+    newest = way.joined[-1]
     for joined in way.joined:
         now = way.assessed
         own, less = _less(way, joined)
         if not (is_told(now, own) and is_needed(less, now)):
             way = _left_with(way, joined, less)
-            continue
-        again = chosen_again(way.device.assessor, now, less, joined.terms, joined.log_prior)
-        if again.id and again.assessed is not None:
-            terms = tuple(again.assessed.model.terms[i].fitted for i in again.places)
-            others = [replace(j, terms=terms) if j is joined else j for j in way.joined]
-            way = _searched(way.device, others, again.assessed.place, again.assessed)
+        elif joined is not newest:
+            way = _in_best_shape(way, joined, less)
     return way
+
+
+def _in_best_shape(way: Found, joined: Joined, less: Assessed) -> Found:
+    """Return the bands with something that has joined, chosen again beside all the rest."""
+    own, prior = joined.terms, joined.log_prior
+    best = chosen_again(way.device.assessor, way.assessed, less, own, prior)
+    if not best.id or best.assessed is None:
+        return way
+    terms = tuple(best.assessed.model.terms[i].fitted for i in best.places)
+    others = [replace(j, terms=terms) if j is joined else j for j in way.joined]
+    return _searched(way.device, others, best.assessed.place, best.assessed)
 
 
 def without(way: Found, joined: Joined) -> Found:
