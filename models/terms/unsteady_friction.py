@@ -21,7 +21,7 @@ def column(motion: Motion, shape: Shape) -> Array:
     The sum over k of 4/j_k^2 times the acceleration behind a lag of T/j_k^2, where j_k are the
     zeros of J2 and T = R^2/nu is the time in which vorticity diffuses across the channel. Slow
     motion feels a third of the inertance more, fast motion a damping that grows with the root of
-    frequency (Zielke, *J. Basic Eng.* 90, 1968, 109-115).
+    frequency (W. Zielke, J. Basic Eng. 90, 1968, 109-115).
     """
     felt = motion.acceleration
     lags = shape["diffusion_time"] / _RATES
