@@ -1,12 +1,14 @@
 """Baselines from the device: what they hold, and what the answer says of them."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from discover.cli import main
 from discover.gap import close_gap
+from discover.readers import read_campaign
 from discover.records import Campaign
 from models.checks import InputError
 from models.device import Device
@@ -144,3 +146,17 @@ def test_presets_keep_the_papers_values_and_nothing_is_left_out(tmp_path, monkey
     orders = [b["terms"][0]["order"] for b in document["baseline"]["bands"]]
     assert orders == [0.48, 1.89]
     assert not any("without" in f["text"] for f in document["findings"])
+
+
+@pytest.mark.sweep
+def test_from_a_baseline_that_lacks_much_the_shipped_campaign_closes_with_what_is_there():
+    """The asymmetry's shape is chosen before the quadratic damping is there, and again after."""
+    records = read_campaign(Path(__file__).parents[2] / "data" / "hidden-effect")
+    gap = close_gap(records, "fit:inertia,viscous-damping")
+    assert gap.verdict == "closed"
+    named = {r.effect for r in gap.rounds}
+    assert named == {"coulomb-friction", "asymmetric-damping", "quadratic-damping"}
+    terms = gap.model.bands[0].model.terms
+    (asymmetry,) = (t for t in terms if t.id == "asymmetric-damping")
+    assert asymmetry.shape == {"power": 1.0, "side": 0.0}
+    assert asymmetry.coefficient == pytest.approx(900.0, rel=0.1)

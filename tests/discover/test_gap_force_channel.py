@@ -71,9 +71,7 @@ def test_a_cell_whose_gain_goes_with_load_is_the_sensor_s(bend):
     "response",
     [
         lambda omega: 1.0 / (1.0 + 1j * omega * RC),
-        pytest.param(butterworth, marks=[
-            pytest.mark.sweep, pytest.mark.xfail(strict=True, reason="it is named play"),
-        ]),
+        pytest.param(butterworth, marks=pytest.mark.sweep),
     ],
     ids=["resistor and capacitor", "Butterworth"],
 )  # fmt: skip
