@@ -94,8 +94,10 @@ def chosen_again(
         if gain.value - gain.trial.log_prior + log_prior > least
         and _choice(gain.trial.terms) != chosen
     ]
-    other = _fitted(assessor, less, others) if others else here
-    if other.assessed is None or other is here:
+    if not others:
+        return here
+    other = _fitted(assessor, less, others)
+    if other.assessed is None:
         return here
     found = [here, replace(other, value=other.assessed.value + log_prior)]
     if any(c.assessed.quiet for c in found if c.assessed):
