@@ -1,228 +1,37 @@
 """What a device has beyond its structure, found beside the bands and not after them.
 
 A spring or a friction that depends on place, left out, would turn into a boundary. So terms of the
-catalogue join the model with one band as well as that with several, bands are searched for anew
-with what has joined. Evidence decides between the ways where one leaves but noise, else prediction.
+catalogue join the model with one band as well as that with several, and bands are searched for anew
+with what has joined.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from discover.bands.composite import composite_of
+from discover.bands.found import Device, Found, Joined, ids_of
 from discover.bands.search import Banded, BandSearch, searched
-from discover.bands.variants import Grids, variants_of
-from discover.posterior.assess import Assessed, Assessor
+from discover.bands.variants import variants_of
+from discover.posterior.assess import Assessed
 from discover.posterior.climb import Place
 from discover.posterior.grow import chosen_again, grown
-from discover.posterior.left_out import is_needed, is_told_from_noise, predicts_better
-from discover.posterior.model import Composite, Evaluator
+from discover.posterior.left_out import is_needed, predicts_better
 from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
 from discover.posterior.spread import is_told
 from discover.posterior.step import Step
-from discover.posterior.structures import Variant
 from discover.rows import RecordRows, force_rows
 from discover.rows.columns import Behind
 from models.checks import Array
-from models.constitutive import FittedTerm
-from models.cores import Core, family_of
-from models.terms import Term
-
-MOST = 4
-"""Terms that may join."""
+from models.cores import family_of
 
 
-@dataclass(frozen=True)
-class Joined:
-    """A term that has joined."""
-
-    terms: tuple[FittedTerm, ...]
-    """One, or several of the same id."""
-    log_prior: float
-    """Nats."""
-    step: Step
-    """What else might have joined in its place."""
-
-    @property
-    def id(self) -> str:
-        """Id of its terms."""
-        return self.terms[0].id
-
-
-@dataclass(frozen=True)
-class Device:
-    """What a search for bands and for what a device has besides starts from."""
-
-    rows: tuple[RecordRows, ...]
-    """Of the records that are fitted."""
-    friction: Term
-    """That every structure may have."""
-    with_friction: bool
-    """Whether models hold it."""
-    cores: tuple[Core, ...]
-    """Structures that a band may have."""
-    grids: Grids
-    """Bounds of their shapes, where given."""
-    extras: tuple[str, ...]
-    """Ids of what may join."""
-    coordinates: tuple[str, ...]
-    """Along which bands may lie: "speed", "frequency"."""
-    bands: int | None
-    """Number that is asked for; None lets the evidence choose."""
-    seed: int = 0
-    """Of what is drawn."""
-    family: str | None = None
-    """Whose best structure what joins is looked for beside; None for any."""
-
-    @cached_property
-    def assessor(self) -> Assessor:
-        """What assesses models of its records."""
-        space, curve = space_of(self.rows, self.friction)
-        return Assessor(space, Evaluator(space.sheet, space.scales), curve, seed=self.seed)
-
-
-@dataclass(frozen=True)
-class Found:
-    """Bands, what holds in each, and what the device has besides."""
-
-    device: Device
-    """That was searched."""
-    banded: Banded
-    """The most probable division."""
-    fewer: tuple[Banded, ...]
-    """All that were weighed beside it with the same terms joined, by number of bands."""
-    search: BandSearch
-    """That found it."""
-    joined: tuple[Joined, ...]
-    """What the device has besides its structure."""
-    last: Step | None
-    """What might have joined and did not; None where nothing but noise was left."""
-    rivals: tuple[Found, ...] = ()
-    """Where other ways ended, with other terms joined, where more than noise is left."""
-
-    @property
-    def value(self) -> float:
-        """Log evidence with priors, nats."""
-        return self.banded.value + sum(j.log_prior for j in self.joined)
-
-    @property
-    def variants(self) -> tuple[Variant, ...]:
-        """That a band may have."""
-        return self.search.variants
-
-    @property
-    def model(self) -> Composite:
-        """Each band's best variant, friction, and what has joined."""
-        shared = [t for j in self.joined for t in j.terms]
-        if self.device.with_friction:
-            shared.append(FittedTerm(self.device.friction.id, 1.0, {}))
-        return composite_of(self.banded, self.variants, shared)
-
-    @property
-    def quiet(self) -> bool:
-        """True where all but noise may be explained: by the structures on their grid, or fitted."""
-        return self.banded.quiet or self.assessed.quiet
-
-    @cached_property
-    def assessed(self) -> Assessed:
-        """The model, fitted."""
-        return self.device.assessor.assess(self.model, self.banded.place)
-
-
-def found(device: Device) -> Found:
-    """Return the most probable bands, with what the device has besides.
-
-    Bands may stand for what a device has besides, and the other way round. So what may join is
-    looked for with bands, and with one band throughout.
-    """
-    best = _searched(device, (), None)
-    if best.quiet:
-        return best
-    ends, seen = list[Found](), set[tuple[object, ...]]()
-    for start in _starts(best):
-        if ends and not is_told_from_noise(best.assessed):
-            break
-        end = _grown(start, seen)
-        if end is None:
-            continue
-        ends.append(end)
-        if len(ends) == 1 or (_names(end) != _names(best) and _is_better(end, best)):
-            best = end
-        if best.quiet:
-            return best
-    return replace(best, rivals=tuple(e for e in ends if _names(e) != _names(best)))
-
-
-def _names(way: Found) -> set[str]:
-    """Return the ids of what has joined: beside the same, a way weighs all structures itself."""
-    return {j.id for j in way.joined}
-
-
-def _starts(now: Found) -> Iterator[Found]:
-    """Yield what terms join: the bands as they are found, one band, and one of each other family.
-
-    What a device has besides, a delay say, may be what makes the wrong family more probable.
-    """
-    yield now
-    if now.device.bands in (None, 1):
-        device, banded = replace(now.device, bands=1), now.fewer[0]
-        one = replace(now, device=device, banded=banded, fewer=(banded,))
-        yield one
-        for other in sorted({family_of(_ids(v)) for v in one.variants} - {_family(one)}):
-            device = replace(one.device, family=other)
-            held = _held(device, now.search, banded)
-            yield replace(one, device=device, banded=held, fewer=(held,))
-
-
-def _grown(way: Found, seen: set[tuple[object, ...]]) -> Found | None:
-    """Return a way with all that may join, its bands searched for anew.
-
-    None where it comes to one band with what another has had there, as `seen` tells.
-    """
-    path = list[Found]()
-    while not way.quiet and len(way.joined) < MOST:
-        if _sign(way) in seen:
-            return None
-        path.append(way)
-        more = _with_one_more(way)
-        if isinstance(more, Step):
-            way = replace(way, last=more)
-            break
-        way = more
-    if all(w.banded.bands == 1 for w in path):
-        seen.update(_sign(w) for w in path)
-    return way
-
-
-def _sign(way: Found) -> tuple[object, ...]:
-    """Return by what a way goes on: its bands, what they have and what has joined."""
-    joined = tuple((j.id, len(j.terms)) for j in way.joined)
-    return way.banded.variants, way.banded.shares.tobytes(), joined
-
-
-def _is_better(now: Found, was: Found) -> bool:
-    """Tell whether a way is better: by evidence where one leaves but noise, else by prediction."""
-    if now.quiet or was.quiet:
-        return now.value > was.value
-    return predicts_better(was.assessed, now.assessed)
-
-
-def _family(way: Found) -> str:
-    """Return the family of the structure in the lowest band."""
-    return family_of(_ids(way.variants[way.banded.variants[0]]))
-
-
-def _ids(variant: Variant) -> list[str]:
-    return [t.id for p in variant.parts for t in p.terms]
-
-
-def _searched(device: Device, joined: Sequence[Joined], place: Place | None,
-              behind: Assessed | None = None) -> Found:
+def searched_with(
+    device: Device, joined: Sequence[Joined], place: Place | None, behind: Assessed | None = None
+) -> Found:
     """Return the bands with what has joined."""
     space, curve, parts = _space(device, joined, behind)
     variants = variants_of(space, device.cores, device.grids)
@@ -235,17 +44,17 @@ def _searched(device: Device, joined: Sequence[Joined], place: Place | None,
         space, variants, curve if device.with_friction else None, tuple(parts),
         {name: values[name] for name in device.coordinates},
     )
-    bands = [_held(device, search, b) for b in searched(search, place, bands=device.bands)]
+    bands = [held(device, search, b) for b in searched(search, place, bands=device.bands)]
     space.forget()
     way = Found(device, bands[-1], tuple(bands), search, tuple(joined), None)
     return _chosen(way if device.bands is None else replace(way, fewer=way.fewer[-1:]))
 
 
-def _held(device: Device, search: BandSearch, banded: Banded) -> Banded:
+def held(device: Device, search: BandSearch, banded: Banded) -> Banded:
     """Return a division with the best structures of the device's family, where it has one."""
     if device.family is None:
         return banded
-    other = [family_of(_ids(v)) != device.family for v in search.variants]
+    other = [family_of(ids_of(v)) != device.family for v in search.variants]
     values = np.where(other, -np.inf, banded.by_variant)
     return replace(banded, variants=tuple(int(v.argmax()) for v in values))
 
@@ -294,7 +103,7 @@ def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
     return result
 
 
-def _with_one_more(way: Found) -> Found | Step:
+def with_one_more(way: Found) -> Found | Step:
     """Return the bands with the term that makes the records most probable, or why there is none."""
     now = way.assessed
     there = {j.id for j in way.joined}
@@ -320,7 +129,7 @@ def _joined(way: Found, step: Step) -> Found:
         replace(j, terms=tuple(fitted.get(t.id, t) for t in j.terms)) if len(j.terms) == 1 else j
         for j in way.joined
     ]
-    return _searched(way.device, (*old, new), best.assessed.place, best.assessed)
+    return searched_with(way.device, (*old, new), best.assessed.place, best.assessed)
 
 
 def _settled(way: Found) -> Found:
@@ -348,7 +157,7 @@ def _in_best_shape(way: Found, joined: Joined, less: Assessed) -> Found:
         return way
     terms = tuple(best.assessed.model.terms[i].fitted for i in best.places)
     others = [replace(j, terms=terms) if j is joined else j for j in way.joined]
-    return _searched(way.device, others, best.assessed.place, best.assessed)
+    return searched_with(way.device, others, best.assessed.place, best.assessed)
 
 
 def without(way: Found, joined: Joined) -> Found:
@@ -369,7 +178,7 @@ def _less(way: Found, joined: Joined) -> tuple[list[int], Assessed]:
 
 def _left_with(way: Found, joined: Joined, less: Assessed) -> Found:
     others = [j for j in way.joined if j is not joined]
-    return _searched(way.device, others, less.place, less)
+    return searched_with(way.device, others, less.place, less)
 
 
 def _that_predict(now: Assessed, step: Step) -> Step:

@@ -8,16 +8,14 @@ thing: together they say as much as the members of a cluster do.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from discover.bands.extras import Found
+from discover.bands.found import Found
 from discover.posterior.left_out import predicted, predicts_best
 from discover.posterior.own_share import own_lines, own_share
-from discover.posterior.spread import idle
 from models.checks import Array
 
 Mask = NDArray[np.bool_]
@@ -41,7 +39,6 @@ def told(found: Found) -> Found:
 
 def _at_power(found: Found, power: float) -> Found:
     """Return the answer with its structures weighed at a power."""
-    found = _without_idle(found)
     banded = found.banded
     _, _, answer = found.search.one(
         banded.place, banded.shares, np.array(banded.variants), power=power
@@ -50,7 +47,7 @@ def _at_power(found: Found, power: float) -> Found:
     for own in _cores(found).values():
         possible = np.where(np.isfinite(by_variant[:, own]), answer.by_variant[0][:, own], -np.inf)
         by_variant[:, own] += _total(possible) - _total(by_variant[:, own])
-    return _with_values(found, by_variant)
+    return found.with_values(by_variant)
 
 
 def _mixed(ways: Sequence[Found]) -> Found:
@@ -73,7 +70,7 @@ def _mixed(ways: Sequence[Found]) -> Found:
         if np.isfinite(weights[most]):
             by_variant[0, own] = values[most, own] + logsumexp(weights) - weights[most]
     best = ways[0].search.of_best_core(by_variant[0])
-    return _with_values(ways[int(way_of[best])], by_variant)
+    return ways[int(way_of[best])].with_values(by_variant)
 
 
 def _cores(found: Found) -> dict[str, Mask]:
@@ -86,37 +83,3 @@ def _total(values: Array) -> Array:
     """Return the logarithm (B, 1) of the sum of exponentials (B, V), 0 where all are none."""
     total = logsumexp(values, axis=1, keepdims=True)
     return np.where(np.isfinite(total), total, 0.0)
-
-
-def _without_idle(found: Found) -> Found:
-    """Return the answer with the most probable structures all of whose terms are told.
-
-    Beside a remainder a structure may be probable for terms that, where terms alone predict, may
-    as well be nothing: they stand for a part of the remainder. Structures that have them in a
-    band are left out there, one term at a time, as those that are alike hide each other.
-    """
-    while True:
-        banded = found.banded
-        doubtful = idle(found.assessed.predicting)
-        by_variant = banded.by_variant.copy()
-        first = 0
-        for band, place in enumerate(banded.variants):
-            own = [t.id for p in found.variants[place].parts for t in p.terms]
-            worst = [own[k - first] for k in doubtful if first <= k < first + len(own)][:1]
-            first += len(own)
-            held = np.array([
-                bool(set(worst) & {p.id for p in variant.parts}) for variant in found.variants
-            ])
-            if np.any(np.isfinite(by_variant[band, ~held])):  # else nothing may take its place
-                by_variant[band, held] = -np.inf
-        if np.array_equal(by_variant, banded.by_variant):
-            return found
-        found = _with_values(found, by_variant)
-
-
-def _with_values(found: Found, by_variant: Array) -> Found:
-    """Return the answer with other log evidence (B, V) of each band's variants."""
-    variants = tuple(found.search.of_best_core(values) for values in by_variant)
-    return replace(
-        found, banded=replace(found.banded, by_variant=by_variant, variants=variants)
-    )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import logsumexp
 
-from discover.bands.extras import Found, Joined
+from discover.bands.found import Found, Joined
 from discover.posterior.reversal import Reversal
 from discover.rows import (
     Accuracy,

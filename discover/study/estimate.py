@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from discover.bands.extras import Found
+from discover.bands.found import Found
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.model import Composite, Number
 from discover.posterior.reversal import Reversal, with_few_curves

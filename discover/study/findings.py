@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from discover.bands.boundaries import Boundary
-from discover.bands.extras import Found
+from discover.bands.found import Found
 from discover.record_checks import data_errors, differing_records
 from discover.records import Campaign, Finding
 from discover.rows import record_rows

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp, ndtr
 
-from discover.bands.extras import Found
+from discover.bands.found import Found
 from discover.posterior.model import Number
 from discover.posterior.spread import Spread, spread_of
 from models.checks import Array

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from discover.bands.extras import Found
+from discover.bands.found import Found
 from discover.dean import DeanCheck
 from discover.next_test import NextTest, Rival, admissible_tests, propose
 from discover.posterior.local import fitted, judged, local_of

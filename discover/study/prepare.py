@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from discover.bands.extras import Device
+from discover.bands.found import Device
 from discover.motion_fit import Observation, observe_all
 from discover.records import Campaign, Finding, checked_campaign
 from discover.rows import RecordRows, record_rows

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from discover.bands.boundaries import Boundary, boundaries_of, line_evidence
-from discover.bands.extras import Found, found, without
+from discover.bands.extras import without
+from discover.bands.found import Found
 from discover.bands.told import told
+from discover.bands.ways import found
 from discover.dean import AmplitudeExponent, DeanCheck, amplitude_exponent, check_dean
 from discover.figure_data import StructureProbability, StudyFigureData
 from discover.motion_fit import Observation

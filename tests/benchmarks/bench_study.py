@@ -11,7 +11,7 @@ from itertools import product
 
 import numpy as np
 
-from discover.bands.extras import found
+from discover.bands.ways import found
 from discover.records import Campaign, Record
 from discover.study import StudyOptions, run_study
 from discover.study.prepare import prepare

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from discover.bands.extras import found
+from discover.bands.ways import found
 from discover.study import StudyOptions
 from discover.study.prepare import prepare
 from tests.discover.exact import campaign

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from discover.bands.extras import found
+from discover.bands.extras import searched_with
 from discover.bands.told import told
+from discover.bands.ways import found
 from discover.posterior.spread import idle
 from discover.study import StudyOptions
 from discover.study.bands import core_probabilities
@@ -24,11 +25,10 @@ def yielding(amplitude, omega, theta):
 def test_idle_terms_make_no_structure():
     records = campaign(yielding, frequencies=(0.1, 0.3, 1.0, 3.0), noise=0.002)
     device = replace(prepare(records, StudyOptions()).device, extras=(), bands=1)
-    before = found(device)
-    after = told(before)
+    before = searched_with(device, (), None)
     assert not before.banded.quiet
     assert not working(device, before)
-    assert working(device, after)
+    assert working(device, told(found(device)))
 
 
 def working(device, answer):
@@ -41,8 +41,8 @@ def working(device, answer):
 def test_few_records_that_no_law_holds_for_make_no_structure_sure():
     """By evidence one is: it is a little less wrong than the others."""
     records = campaign(yielding, frequencies=(0.3, 1.0), amplitudes=(0.01, 0.02), noise=0.002)
-    before = found(replace(prepare(records, StudyOptions()).device, extras=()))
-    after = told(before)
+    device = replace(prepare(records, StudyOptions()).device, extras=())
+    before, after = searched_with(device, (), None), told(found(device))
     assert not before.banded.quiet
     assert after.banded.bands == 1
     assert max(core_probabilities(before, 0).values()) > 0.95

@@ -1,0 +1,105 @@
+"""The ways to what a device has besides its structure, and which of them is taken.
+
+Bands may stand for what a device has besides, and the other way round; so may the wrong family.
+Evidence decides between the ways where one leaves but noise, else prediction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from discover.bands.extras import held, searched_with, with_one_more
+from discover.bands.found import Device, Found, ids_of
+from discover.bands.idle import without_idle
+from discover.posterior.left_out import is_told_from_noise, predicts_better
+from discover.posterior.step import Step
+from models.cores import family_of
+
+MOST = 4
+"""Terms that may join."""
+
+
+def found(device: Device) -> Found:
+    """Return the most probable bands, with what the device has besides.
+
+    Bands may stand for what a device has besides, and the other way round. So what may join is
+    looked for with bands, with one band throughout, and beside the other family, until a way is
+    found whose terms are all told and leave but noise.
+    """
+    best = searched_with(device, (), None)
+    if best.quiet:
+        return best
+    ends, seen = list[Found](), set[tuple[object, ...]]()
+    for start in _starts(best):
+        if ends and not is_told_from_noise(best.assessed):
+            break
+        end = _grown(start, seen)
+        if end is None:
+            continue
+        end = end if end.quiet else without_idle(end)
+        ends.append(end)
+        if len(ends) == 1 or (_names(end) != _names(best) and _is_better(end, best)):
+            best = end
+        if best.quiet:
+            return best
+    return replace(best, rivals=tuple(e for e in ends if _names(e) != _names(best)))
+
+
+def _names(way: Found) -> set[str]:
+    """Return the ids of what has joined: beside the same, a way weighs all structures itself."""
+    return {j.id for j in way.joined}
+
+
+def _starts(now: Found) -> Iterator[Found]:
+    """Yield what terms join: the bands as they are found, one band, and one of each other family.
+
+    What a device has besides, a delay say, may be what makes the wrong family more probable.
+    """
+    yield now
+    if now.device.bands in (None, 1):
+        device, banded = replace(now.device, bands=1), now.fewer[0]
+        one = replace(now, device=device, banded=banded, fewer=(banded,))
+        yield one
+        for other in sorted({family_of(ids_of(v)) for v in one.variants} - {_family(one)}):
+            device = replace(one.device, family=other)
+            own = held(device, now.search, banded)
+            yield replace(one, device=device, banded=own, fewer=(own,))
+
+
+def _grown(way: Found, seen: set[tuple[object, ...]]) -> Found | None:
+    """Return a way with all that may join, its bands searched for anew.
+
+    None where it comes to one band with what another has had there, as `seen` tells.
+    """
+    path = list[Found]()
+    while not way.quiet and len(way.joined) < MOST:
+        if _sign(way) in seen:
+            return None
+        path.append(way)
+        more = with_one_more(way)
+        if isinstance(more, Step):
+            way = replace(way, last=more)
+            break
+        way = more
+    if all(w.banded.bands == 1 for w in path):
+        seen.update(_sign(w) for w in path)
+    return way
+
+
+def _sign(way: Found) -> tuple[object, ...]:
+    """Return by what a way goes on: its bands, what they have and what has joined."""
+    joined = tuple((j.id, len(j.terms)) for j in way.joined)
+    return way.banded.variants, way.banded.shares.tobytes(), joined
+
+
+def _is_better(now: Found, was: Found) -> bool:
+    """Tell whether a way is better: by evidence where one leaves but noise, else by prediction."""
+    if now.quiet or was.quiet:
+        return now.value > was.value
+    return predicts_better(was.assessed, now.assessed)
+
+
+def _family(way: Found) -> str:
+    """Return the family of the structure in the lowest band."""
+    return family_of(ids_of(way.variants[way.banded.variants[0]]))
