@@ -15,7 +15,7 @@ import numpy as np
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.catalogue import trials_of
 from discover.posterior.climb import Place
-from discover.posterior.left_out import predicted
+from discover.posterior.left_out import meets_unseen_worse, predicted
 from discover.posterior.own_share import own_lines
 from discover.posterior.step import Candidate, Step, ordered
 from discover.posterior.weigh import Gain, Trials, gains
@@ -107,14 +107,17 @@ def chosen_again(
 
 def _by_prediction(found: Sequence[Candidate], now: Assessed, seed: int) -> Step:
     """Return candidates weighed by how well they predict records that are left out."""
-    weighed = [_predicting(c) if c.value > now.value - _NATS else c for c in found]
+    weighed = [_predicting(now, c) if c.value > now.value - _NATS else c for c in found]
     parts = next(c.left.size for c in weighed if c.left is not None)
     return ordered(Step(tuple(weighed), seed, own_lines(now.predicting, parts)))
 
 
-def _predicting(candidate: Candidate) -> Candidate:
-    """Return a candidate with what it leaves of records that are predicted by the others."""
-    if candidate.assessed is None:
+def _predicting(now: Assessed, candidate: Candidate) -> Candidate:
+    """Return a candidate with what it leaves of records that are predicted by the others.
+
+    One that makes the model worse on records of which it has seen nothing does not predict.
+    """
+    if candidate.assessed is None or meets_unseen_worse(now, candidate.assessed):
         return candidate
     return replace(candidate, left=predicted(candidate.assessed))
 

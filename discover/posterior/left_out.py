@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +11,11 @@ from scipy.special import softmax
 
 from discover.posterior.assess import Assessed
 from discover.posterior.evidence import root_of
+from discover.posterior.local import Local
 from discover.posterior.own_share import own_lines
 from discover.posterior.sheet import Sheet
 from models.checks import Array, Indices
+from models.terms.between_tests import ONLY
 
 _DRAWS = 4000  # of records' weights
 _NOTHING = 1e-12  # of an energy: rounding of a sum less one of its parts
@@ -36,8 +39,8 @@ def left_out(assessed: Assessed) -> tuple[Array, Array]:
         Mean square of what is left over that of the record's force. The remainder that records
         share is not used to predict.
     """
-    fitted, predicted, _ = _left(assessed)
-    return fitted, predicted
+    left = _left(assessed)
+    return left.fitted, left.predicted
 
 
 def predicted(assessed: Assessed) -> Array:
@@ -47,12 +50,26 @@ def predicted(assessed: Assessed) -> Array:
     Autom. Control* 19, 1974, 716-723), each by the lines that say something of their own.
     """
     best = assessed.predicting
-    _, errors, own = _left(best)
-    return np.asarray(errors * np.exp(2.0 * own / own_lines(best, errors.size)))
+    left = _left(best)
+    charge = 2.0 * left.own / own_lines(best, left.own.size)
+    return np.asarray(left.predicted * np.exp(charge))
 
 
-def _left(assessed: Assessed) -> tuple[Array, Array, Array]:
-    """Return what is left, fitted and predicted, and how many numbers only the record tells."""
+@dataclass(frozen=True)
+class _Left:
+    """What a model leaves of each record, or part: mean square over that of the force."""
+
+    fitted: Array
+    """(N,) where it is fitted to all."""
+    predicted: Array
+    """(N,) to the others, and to the record what only the record tells."""
+    unaided: Array
+    """(N,) to the others; of what every test has of its own, their mean."""
+    own: Array
+    """(N,) how many numbers only the record tells."""
+
+
+def _left(assessed: Assessed) -> _Left:
     space, local = assessed.space, assessed.local
     curve = assessed.curve
     here = space.given(assessed.place.sizes(space.own_unit))
@@ -68,20 +85,39 @@ def _left(assessed: Assessed) -> tuple[Array, Array, Array]:
     total = gram.sum(axis=0)
     free = np.ones(spread.size, dtype=bool)
     free[: local.held.size] = ~local.held
-    found = np.zeros((3, parts.max() + 1))
+    alike = _alike(local, spread.size)
+    nothing = np.zeros(spread.size)
+    fit = _beside(total, spread, free, nothing)
+    found = np.zeros((4, parts.max() + 1))
     for part in range(parts.max() + 1):
         inside = parts == part
         own = gram[inside].sum(axis=0)
         shown = np.diagonal(total - own)[:-1] > _NOTHING * np.diagonal(total)[:-1]
         elsewhere = free if alone and parts.size > 1 else free & shown
-        for place, (some, seen) in enumerate(((total, free), (total - own, elsewhere))):
-            values = _beside(some, spread, seen, np.zeros(spread.size))
-            values = _beside(own, spread, free & ~seen, values)
+        only_here = free & ~elsewhere
+        known = _beside(total - own, spread, elsewhere, nothing)
+        aided = _beside(own, spread, only_here, known)
+        others = alike @ np.where(elsewhere, known, 0.0) / np.maximum(alike @ elsewhere, 1.0)
+        unaided = np.where(only_here, others, known)
+        for place, values in enumerate((fit, aided, unaided)):
             left = columns[inside, -1] - np.einsum("p,upr->ur", values, columns[inside, :-1])
             found[place, part] = _relative(space.sheet, np.flatnonzero(inside), left)
-        found[2, part] = np.count_nonzero(free & ~elsewhere & (np.diagonal(own)[:-1] > 0.0))
-    fitted, by_others, its_own = found
-    return fitted, by_others, its_own
+        found[3, part] = np.count_nonzero(only_here & (np.diagonal(own)[:-1] > 0.0))
+    return _Left(*found)
+
+
+def _alike(local: Local, count: int) -> Array:
+    """Return (P, P) 1 for coefficients of what every test has of its own alike, else 0."""
+    kinds: dict[tuple[object, ...], list[int]] = {}
+    for place, n in enumerate(local.numbers):
+        fitted = local.model.terms[n.term].fitted
+        if n.shape is None and fitted.shape.get(ONLY.name, 0.0) > 0.0:
+            others = (v for v in fitted.shape.items() if v[0] != ONLY.name)
+            kinds.setdefault((fitted.id, *others), []).append(place)
+    found = np.zeros((count, count))
+    for places in kinds.values():
+        found[np.ix_(places, places)] = 1.0
+    return found
 
 
 def _beside(gram: Array, spread: Array, free: NDArray[np.bool_], values: Array) -> Array:
@@ -102,7 +138,19 @@ def predicts_better(was: Assessed, now: Assessed) -> bool:
     Of one record in a single part nothing can be left out: evidence decides.
     """
     before, after = (predicted(a) for a in (was, now))
-    return now.value > was.value if after.size < 2 else is_less(after, before)
+    if after.size < 2:
+        return now.value > was.value
+    return is_less(after, before) and not meets_unseen_worse(was, now)
+
+
+def meets_unseen_worse(was: Assessed, now: Assessed) -> bool:
+    """Tell whether a model is worse than another one on records of which it has seen nothing.
+
+    There what every test has of its own is known by its mean only. It may be what there is: where
+    with it but noise is left it is never worse.
+    """
+    before, after = (_left(a.predicting).unaided for a in (was, now))
+    return not now.quiet and after.size > 1 and is_less(before, after)
 
 
 def is_told_from_noise(assessed: Assessed) -> bool:

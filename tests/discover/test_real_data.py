@@ -112,6 +112,16 @@ def test_silverbox_is_a_duffing_oscillator():
     assert study.held_out_relative_error_percent < 1.6
 
 
+@pytest.mark.sweep
+@needs_data
+def test_a_strip_that_relaxes_has_a_memory_and_no_sensor_that_drifts():
+    study = run_study(read_campaign(FOLDER / "elastomer-vhb4910"))
+    found = set(coefficients(study))
+    assert {"fractional-derivative", "relaxation"} & found
+    assert not {"sensor-drift", "sensor-gain", "sensor-clipping", "time-delay"} & found
+    assert study.held_out_relative_error_percent < 42.0  # of the baseline
+
+
 STRANGE = (
     "foot-single-cam", "fsae-damper-hard", "fsae-damper-soft", "inerter-cvt-steady",
     "mr-utfsm-0p5A", "seal-oring-1bar", "seal-xring",

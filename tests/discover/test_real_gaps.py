@@ -38,6 +38,7 @@ def gap_of(name, baseline):
         ("fsae-damper-soft", VISCOUS, "force-offset", {"inertia", "stiffness", "thermal-drift"}),
         ("emps", RIGID, "asymmetric-damping", {"fractional-derivative"}),
         ("seal-oring-1bar", FRICTION, "force-offset", SENSORS),
+        ("elastomer-vhb4910", RIGID, "relaxation", {"sensor-drift", "coulomb-friction"}),
     ],
 )
 def test_what_helps_a_measured_machine_most_is_what_is_known_of_it(name, baseline, first, wrong):
@@ -69,6 +70,11 @@ def test_a_damper_with_an_offset_of_each_record_is_met_to_its_bar():
 def test_a_damper_with_hysteresis_is_predicted_in_a_record_that_was_not_fitted():
     gap = gap_of("fsae-damper-hard", VISCOUS)
     assert gap.rounds[-1].unseen[1] < 6.0
+
+
+def test_a_strip_that_relaxes_is_met_better_in_records_that_were_not_fitted():
+    (first, *_) = gap_of("elastomer-vhb4910", RIGID).rounds
+    assert first.unseen[1] < 0.4 * first.unseen[0]
 
 
 def test_an_oscillator_with_a_cube_is_met_as_least_squares_meet_it():

@@ -18,7 +18,7 @@ CONTRACT = {
     "hysteresis", "position-dependent-friction", "thermal-drift", "sensor-gain", "sensor-drift",
     "sensor-clipping",
 }
-ADDED = {"unsteady-friction"}
+ADDED = {"relaxation", "unsteady-friction"}
 
 
 def force(*terms, motion=MOTION):

@@ -29,6 +29,7 @@ SHAPES = {
     "backlash": {"gap": 1e-3, "contact": 300.0, "loss": 0.5},
     "series-compliance": {"loss": 0.1},
     "unsteady-friction": {"diffusion_time": 2.0},
+    "relaxation": {"relaxation_time": 0.4},
 }
 COEFFICIENT = {"series-compliance": 1e-5, "time-delay": 3e-3, "cavitation": 0.8, "sensor-gain": 0.1}
 DEVICE = (("inertia", 30.0), ("viscous-damping", 200.0))
@@ -36,7 +37,7 @@ FORCES = sorted(i for i, t in TERMS.items() if t.acts == "force")
 ODD = {
     "inertia", "viscous-damping", "quadratic-damping", "power-law-damping", "coulomb-friction",
     "fractional-derivative", "stiffness", "cubic-stiffness", "stribeck-friction", "end-stop",
-    "hysteresis", "thermal-drift", "unsteady-friction",
+    "hysteresis", "thermal-drift", "unsteady-friction", "relaxation",
 }  # fmt: skip
 EVEN = {"force-offset", "asymmetric-damping", "position-dependent-friction", "sensor-drift"}
 

@@ -11,6 +11,7 @@ from discover.posterior.left_out import (
     is_less,
     is_needed,
     left_out,
+    meets_unseen_worse,
     predicts_best,
     predicts_better,
 )
@@ -134,6 +135,30 @@ def test_an_offset_of_every_record_s_own_has_to_be_worth_a_number_for_each():
     assert is_less(left_out(each.predicting)[1], left_out(shared.predicting)[1])
     assert not predicts_better(shared, each)
     np.testing.assert_array_equal(compared(shared), left_out(shared.predicting)[1])
+
+
+@pytest.mark.parametrize(("alike", "worse"), [(True, False), (False, True)])
+def test_what_every_test_has_of_its_own_is_known_by_its_mean_where_nothing_was_seen(alike, worse):
+    """Offsets of both signs explain every record, and say nothing of the next one."""
+    def law(amplitude, omega, theta):
+        v = amplitude * omega
+        plain = -80.0 * v * omega * np.sin(theta) + 900.0 * v * np.cos(theta)
+        return plain + (60.0 if alike or amplitude < 0.015 else -60.0) + 30.0 * np.cos(3.0 * theta)
+
+    records = campaign(law, frequencies=FREQUENCIES, amplitudes=(0.01, 0.02), noise=0.001)
+    device = prepare(records, StudyOptions()).device
+    structure = FittedTerm("inertia", 80.0), FittedTerm("viscous-damping", 900.0)
+    own = [FittedTerm("force-offset", 60.0, {"only": n + 1.0}) for n in range(len(records.records))]
+    none, each = (
+        device.assessor.assess(
+            Composite.of(ForceModel((*structure, *offsets))), device.assessor.space.start
+        )
+        for offsets in ((), own)
+    )
+    assert not each.quiet
+    assert meets_unseen_worse(none, each) == worse
+    assert predicts_better(none, each) != worse
+    assert not meets_unseen_worse(none, none)
 
 
 def test_of_one_record_in_one_piece_evidence_decides():
