@@ -175,7 +175,10 @@ def _verdict(found: Search, noise: float) -> str:
     quiet = final.assessed.quiet
     if not found.rounds:
         return "agrees" if quiet else "unexplained"
-    return "closed" if quiet or final.gap <= CLOSED * noise else "reduced"
+    each = [a.relative_percent / max(a.noise_percent, 1e-300) for a in final.seen]
+    alike = float(np.exp(np.mean(np.log(np.maximum(each, 1e-300)))))  # every record counts alike
+    near = final.gap <= CLOSED * noise and alike <= CLOSED
+    return "closed" if quiet or near else "reduced"
 
 
 def _name(identifier: str, at: Stage) -> str:

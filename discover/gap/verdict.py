@@ -17,7 +17,7 @@ from discover.words import (
 )
 
 CLOSED = 1.15
-"""Times the noise floor, up to which a gap is closed to it."""
+"""Times the noise floor, up to which a gap is closed: pooled, and where records count alike."""
 
 _VERDICTS = {
     "agrees": "model and measurement agree within the noise; nothing is missing",

@@ -175,7 +175,7 @@ def _window(
         amplitude=float(np.sqrt(2.0) * x_rms),
         speed=float(np.sqrt(2.0) * v_rms),
         rest=0.0,
-        noise_power=float(2.0 * np.sum(variance)),
+        noise_power=float(2.0 * np.sum(variance[1:])),  # of the mean it is a guess
         share=float(np.sum(taper**2)) / mass,
     )
 

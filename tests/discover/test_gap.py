@@ -120,6 +120,20 @@ def test_a_law_that_no_term_has_is_not_given_a_name():
     assert found.to_dict()["shape"]
 
 
+def test_a_loud_record_does_not_close_what_the_others_leave_open():
+    def law(t, x, v, a):
+        stroke = x / np.abs(x).max()  # of each test: no law of the motion
+        return device(t, x, v, a) + 4.0 * (3.0 * stroke - 4.0 * stroke**3) + 25.0
+
+    loud = record(6.0, 0.03, law, np.random.default_rng(1), noise=0.5)
+    found = close_gap(Campaign("one is loud", (*campaign(law).records, loud)), BASE)
+    assert found.rounds
+    assert found.final_gap_percent < 1.15 * found.noise_percent
+    over = [r.after / r.noise for r in found.records[:-1]]
+    assert np.median(over) > 1.5
+    assert found.verdict == "reduced"
+
+
 def test_a_tone_that_does_not_follow_the_motion_is_never_silently_agreed_with():
     for tone in (5.3, 17.7):
         found = close_gap(
