@@ -15,10 +15,11 @@ import numpy as np
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.catalogue import trials_of
 from discover.posterior.climb import Place
-from discover.posterior.left_out import meets_unseen_worse, predicted
+from discover.posterior.left_out import predicted_no_worse, unseen
 from discover.posterior.own_share import own_lines
 from discover.posterior.step import Candidate, Step, ordered
 from discover.posterior.weigh import Gain, Trials, gains
+from models.checks import Array
 from models.constitutive import FittedTerm
 from models.terms import TERMS
 
@@ -107,19 +108,20 @@ def chosen_again(
 
 def _by_prediction(found: Sequence[Candidate], now: Assessed, seed: int) -> Step:
     """Return candidates weighed by how well they predict records that are left out."""
-    weighed = [_predicting(now, c) if c.value > now.value - _NATS else c for c in found]
+    before = unseen(now)
+    weighed = [_predicting(c, before) if c.value > now.value - _NATS else c for c in found]
     parts = next(c.left.size for c in weighed if c.left is not None)
     return ordered(Step(tuple(weighed), seed, own_lines(now.predicting, parts)))
 
 
-def _predicting(now: Assessed, candidate: Candidate) -> Candidate:
+def _predicting(candidate: Candidate, before: Array) -> Candidate:
     """Return a candidate with what it leaves of records that are predicted by the others.
 
-    One that makes the model worse on records of which it has seen nothing does not predict.
+    One that leaves more of unseen records than was left `before` does not predict.
     """
-    if candidate.assessed is None or meets_unseen_worse(now, candidate.assessed):
+    if candidate.assessed is None:
         return candidate
-    return replace(candidate, left=predicted(candidate.assessed))
+    return replace(candidate, left=predicted_no_worse(candidate.assessed, before))
 
 
 def _simulated(identifier: str) -> bool:

@@ -49,10 +49,25 @@ def predicted(assessed: Assessed) -> Array:
     Numbers that only the record itself tells are charged as fitted ones are (Akaike, *IEEE Trans.
     Autom. Control* 19, 1974, 716-723), each by the lines that say something of their own.
     """
-    best = assessed.predicting
-    left = _left(best)
-    charge = 2.0 * left.own / own_lines(best, left.own.size)
-    return np.asarray(left.predicted * np.exp(charge))
+    return _charged(assessed, _left(assessed.predicting))
+
+
+def unseen(assessed: Assessed) -> Array:
+    """Return what a model leaves (N,) of each record of which it has seen nothing.
+
+    There what every test has of its own is known by its mean only.
+    """
+    return _left(assessed.predicting).unaided
+
+
+def predicted_no_worse(assessed: Assessed, before: Array) -> Array | None:
+    """Return `predicted`; None where a model leaves more of unseen records than was left `before`.
+
+    What every test has of its own may be what there is: where with it but noise is left, it is
+    never worse.
+    """
+    left = _left(assessed.predicting)
+    return None if _misleads(assessed, before, left) else _charged(assessed, left)
 
 
 @dataclass(frozen=True)
@@ -67,6 +82,15 @@ class _Left:
     """(N,) to the others; of what every test has of its own, their mean."""
     own: Array
     """(N,) how many numbers only the record tells."""
+
+
+def _charged(assessed: Assessed, left: _Left) -> Array:
+    charge = 2.0 * left.own / own_lines(assessed.predicting, left.own.size)
+    return np.asarray(left.predicted * np.exp(charge))
+
+
+def _misleads(assessed: Assessed, before: Array, left: _Left) -> bool:
+    return not assessed.quiet and before.size > 1 and is_less(before, left.unaided)
 
 
 def _left(assessed: Assessed) -> _Left:
@@ -135,22 +159,14 @@ def _beside(gram: Array, spread: Array, free: NDArray[np.bool_], values: Array) 
 def predicts_better(was: Assessed, now: Assessed) -> bool:
     """Tell whether a model predicts records that are left out better than another one.
 
-    Of one record in a single part nothing can be left out: evidence decides.
+    Nor may it be worse on records of which it has seen nothing, see `predicted_no_worse`. Of one
+    record in a single part nothing can be left out: evidence decides.
     """
-    before, after = (predicted(a) for a in (was, now))
-    if after.size < 2:
+    before, after = (_left(a.predicting) for a in (was, now))
+    if after.own.size < 2:
         return now.value > was.value
-    return is_less(after, before) and not meets_unseen_worse(was, now)
-
-
-def meets_unseen_worse(was: Assessed, now: Assessed) -> bool:
-    """Tell whether a model is worse than another one on records of which it has seen nothing.
-
-    There what every test has of its own is known by its mean only. It may be what there is: where
-    with it but noise is left it is never worse.
-    """
-    before, after = (_left(a.predicting).unaided for a in (was, now))
-    return not now.quiet and after.size > 1 and is_less(before, after)
+    better = is_less(_charged(now, after), _charged(was, before))
+    return better and not _misleads(now, before.unaided, after)
 
 
 def is_told_from_noise(assessed: Assessed) -> bool:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from discover.motion_fit import observe
 from discover.motion_fit.band import choose_cutoff, observe_band
@@ -170,3 +171,18 @@ def test_noise_that_rises_to_low_frequencies_is_seen_in_the_lowest_lines():
         for window in observe_band(record, slice(None), "random").windows:
             ratios.append(np.abs(window.project(error)[1:6]) ** 2 / (2.0 * window.variance[1:6]))
     assert 0.5 < np.mean(ratios) < 2.0
+
+
+def test_noise_that_drifts_is_as_great_as_it_is_beside_the_mean():
+    """In the middle over records: what it adds to a record's mean is a guess, and no noise."""
+    time = np.arange(3000) / 100.0
+    ratios = []
+    for seed in range(16):
+        rng = np.random.default_rng(seed)
+        x, v, _ = multisine(time, low=0.3, high=3.0, count=30, seed=seed)
+        noise = lfilter([1.0], [1.0, -0.9995], rng.standard_normal(time.size + 4000))[4000:]
+        noise *= 0.05 * np.std(900.0 * v) / noise.std()
+        windows = observe(Record("drifting.csv", time, 900.0 * v + noise, x)).windows
+        made = sum(w.share * np.sum(np.abs(w.project(noise)[1:]) ** 2) for w in windows)
+        ratios.append(sum(w.share * w.noise_power for w in windows) / made)
+    assert 1.0 / 1.5 < np.exp(0.5 * np.mean(np.log(ratios))) < 1.5

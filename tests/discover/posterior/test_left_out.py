@@ -11,9 +11,10 @@ from discover.posterior.left_out import (
     is_less,
     is_needed,
     left_out,
-    meets_unseen_worse,
+    predicted_no_worse,
     predicts_best,
     predicts_better,
+    unseen,
 )
 from discover.posterior.left_out import predicted as compared
 from discover.posterior.model import Composite
@@ -156,9 +157,10 @@ def test_what_every_test_has_of_its_own_is_known_by_its_mean_where_nothing_was_s
         for offsets in ((), own)
     )
     assert not each.quiet
-    assert meets_unseen_worse(none, each) == worse
+    assert is_less(unseen(none), unseen(each)) == worse
+    assert (predicted_no_worse(each, unseen(none)) is None) == worse
     assert predicts_better(none, each) != worse
-    assert not meets_unseen_worse(none, none)
+    np.testing.assert_array_equal(predicted_no_worse(none, unseen(none)), compared(none))
 
 
 def test_of_one_record_in_one_piece_evidence_decides():
