@@ -26,7 +26,8 @@ _NOT_THE_LINES = 1.5  # times the noise, from which a gap is not what the tests'
 
 
 def findings_of(
-    baseline: Baseline, found: Search, rounds: Sequence[NamedEffect], text: str, noise: float
+    baseline: Baseline, found: Search, rounds: Sequence[NamedEffect], text: str, noise: float,
+    verdict: str,
 ) -> tuple[Finding, ...]:
     """Return what a reader of a gap search's answer has to know.
 
@@ -42,6 +43,8 @@ def findings_of(
         Where the baseline misses, in words.
     noise : float
         The records' noise floor, %.
+    verdict : str
+        What the search comes to.
     """
     return (
         Finding("note", text),
@@ -52,7 +55,7 @@ def findings_of(
         *_noisy(found.final),
         *_spikes(found.final, noise),
         *_not_met(found.final, noise),
-        *_unexplained(found, noise),
+        *_unexplained(found, noise, verdict),
     )
 
 
@@ -89,8 +92,8 @@ def _refused_or_dropped(found: Search) -> list[Finding]:
             Finding(
                 "warning",
                 f"{_named(found.rejected)} "
-                "would make the fitted records more probable but predicts those"
-                " that were not fitted worse, and is not added.",
+                "would make the fitted records more probable, but those that were not"
+                " fitted are not met better: it is not added.",
             )
         )
     for entry in found.rounds:
@@ -103,7 +106,7 @@ def _refused_or_dropped(found: Search) -> list[Finding]:
     return result
 
 
-def _unexplained(found: Search, noise: float) -> list[Finding]:
+def _unexplained(found: Search, noise: float, verdict: str) -> list[Finding]:
     """Return what is left at the end that no effect of the list explains."""
     result = []
     over = found.final.gap / max(noise, 1e-300)
@@ -116,7 +119,7 @@ def _unexplained(found: Search, noise: float) -> list[Finding]:
                 " Look at the force's spectrum.",
             )
         )
-    if not found.final.assessed.quiet:
+    if verdict not in ("agrees", "closed"):
         result.append(
             Finding(
                 "warning",

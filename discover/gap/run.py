@@ -154,7 +154,7 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         findings=(
             *data_errors(campaign),
             *(d.finding for d in differing),
-            *findings_of(baseline, found, rounds, where_in_words(located), noise),
+            *findings_of(baseline, found, rounds, where_in_words(located), noise, verdict),
         ),
         given=baseline.whole,
         model=_mended(campaign, baseline, found),

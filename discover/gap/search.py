@@ -90,7 +90,7 @@ class Search:
     last: Step | None
     """What might have been added and was not; None where only noise was left."""
     rejected: str | None = None
-    """An effect that would predict what was not fitted worse."""
+    """An effect that is more probable but does not predict what was not fitted better."""
 
     @property
     def final(self) -> Stage:

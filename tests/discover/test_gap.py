@@ -93,6 +93,25 @@ def test_friction_that_sets_in_during_a_record_is_told_as_friction(settling):
     assert found.final_gap_percent < 1.2 * found.noise_percent
 
 
+@pytest.mark.parametrize(
+    ("law", "knee", "sharpness"),
+    [
+        (lambda v: 90.0 / (v / 0.12 + 0.12 / v), (0.11, 0.13), 2.0),  # an eddy-current brake
+        (lambda v: 2e3 * v / (1.0 + np.abs(v / 0.06)) ** 0.6, (0.05, 0.1), 1.0),  # an oil, by Cross
+        (lambda v: np.clip(700.0 * v, -60.0, 60.0), (0.08, 0.1), 8.0),  # a valve opens
+    ],
+    ids=["brake", "oil", "valve"],
+)
+def test_damping_that_saturates_is_named_with_its_knee(law, knee, sharpness):
+    found = close_gap(campaign(lambda t, x, v, a: 120.0 * a + law(v)), BASE)
+    (only,) = found.rounds
+    assert only.effect == "saturating-damping"
+    assert only.probability > 0.9
+    assert knee[0] < only.parameters["knee_speed"] < knee[1]
+    assert only.parameters["sharpness"] == sharpness
+    assert found.verdict == "closed"
+
+
 def test_fixed_coefficients_show_an_added_mass_that_a_fit_absorbs():
     given = ForceModel((FittedTerm("inertia", 100.0), FittedTerm("viscous-damping", 800.0)))
     data = campaign(device)

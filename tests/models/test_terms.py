@@ -30,6 +30,7 @@ SHAPES = {
     "series-compliance": {"loss": 0.1},
     "unsteady-friction": {"diffusion_time": 2.0},
     "relaxation": {"relaxation_time": 0.4},
+    "saturating-damping": {"knee_speed": 0.05},
 }
 COEFFICIENT = {"series-compliance": 1e-5, "time-delay": 3e-3, "cavitation": 0.8, "sensor-gain": 0.1}
 DEVICE = (("inertia", 30.0), ("viscous-damping", 200.0))
@@ -37,7 +38,7 @@ FORCES = sorted(i for i, t in TERMS.items() if t.acts == "force")
 ODD = {
     "inertia", "viscous-damping", "quadratic-damping", "power-law-damping", "coulomb-friction",
     "fractional-derivative", "stiffness", "cubic-stiffness", "stribeck-friction", "end-stop",
-    "hysteresis", "thermal-drift", "unsteady-friction", "relaxation",
+    "hysteresis", "thermal-drift", "unsteady-friction", "relaxation", "saturating-damping",
 }  # fmt: skip
 EVEN = {"force-offset", "asymmetric-damping", "position-dependent-friction", "sensor-drift"}
 
