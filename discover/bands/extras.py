@@ -186,12 +186,9 @@ def _that_predict(now: Assessed, step: Step) -> Step:
 
     Nor may it be a term whose sign the records don't tell.
     """
-    refused = []
-    for candidate in step.candidates:
-        if not candidate.id or candidate.assessed is None:
+    while step.best.id and step.best.assessed is not None:
+        best = step.best.assessed
+        if is_told(best, step.best.places) and predicts_better(now, best):
             break
-        told = is_told(candidate.assessed, candidate.places)
-        if told and predicts_better(now, candidate.assessed):
-            break
-        refused.append(candidate.id)
-    return step.without(refused)
+        step = step.without([step.best.id])
+    return step

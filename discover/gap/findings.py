@@ -92,8 +92,8 @@ def _refused_or_dropped(found: Search) -> list[Finding]:
             Finding(
                 "warning",
                 f"{_named(found.rejected)} "
-                "would make the fitted records more probable, but those that were not"
-                " fitted are not met better: it is not added.",
+                "would make the fitted records more probable, but leaves no less of them,"
+                " or those that were not fitted are not met better: it is not added.",
             )
         )
     for entry in found.rounds:

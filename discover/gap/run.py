@@ -23,7 +23,7 @@ from discover.posterior.spread import Spread, spread_of
 from discover.posterior.step import Step
 from discover.record_checks import data_errors, differing_records
 from discover.records import Campaign, checked_campaign
-from discover.rows import Unexplained, alike_percent, force_rows, noise_percent, unexplained
+from discover.rows import Unexplained, force_rows, noise_percent, unexplained
 from models.checks import InputError, one_of
 from models.constitutive import Band, FittedTerm, ForceModel, SegmentedModel
 from models.terms import TERMS
@@ -111,7 +111,8 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
     spread = spread_of(final.assessed, final.predicting)
     located = places(baseline.rows, start.models)
     left = places(baseline.rows, final.models)
-    verdict = _verdict(found, noise)
+    remainder = _remainder(baseline, final)
+    verdict = _verdict(found, noise, remainder)
     rounds = tuple(_named(baseline, r, i, found) for i, r in enumerate(found.rounds))
     shape = ""
     if verdict not in ("agrees", "closed"):
@@ -147,9 +148,9 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
         final_gap_percent=final.gap,
         final_held_out_gap_percent=final.unseen_gap,
         unexplained_percent=float(np.sqrt(max(final.gap**2 - noise**2, 0.0))),
-        remainder=_remainder(baseline, final),
+        remainder=remainder,
         shape=shape,
-        last=_contest(found),
+        last=_contest(found, verdict),
         leave_one_out=not campaign.held_out,
         findings=(
             *data_errors(campaign),
@@ -170,30 +171,26 @@ def _remainder(baseline: Baseline, at: Stage) -> Unexplained:
     return unexplained([r for r, _ in pairs], [force_rows(r, m) for r, m in pairs])
 
 
-def _verdict(found: Search, noise: float) -> str:
+def _verdict(found: Search, noise: float, remainder: Unexplained) -> str:
     final = found.final
     quiet = final.assessed.quiet
-    if not found.rounds:
-        return "agrees" if quiet else "unexplained"
     each = [a.relative_percent / max(a.noise_percent, 1e-300) for a in final.seen]
     alike = float(np.exp(np.mean(np.log(np.maximum(each, 1e-300)))))  # every record counts alike
     near = final.gap <= CLOSED * noise and alike <= CLOSED
+    if not found.rounds:
+        nothing = near and remainder.interval[0] == 0.0
+        return "agrees" if quiet or nothing else "unexplained"
     return "closed" if quiet or near else "reduced"
 
 
-def _name(identifier: str, at: Stage) -> str:
-    """Return an id; what the model as it is stands for where there is none."""
-    return identifier or (AGREES if at.assessed.quiet else UNKNOWN)
-
-
-def _contest(found: Search) -> tuple[tuple[str, float], ...]:
+def _contest(found: Search, verdict: str) -> tuple[tuple[str, float], ...]:
     """Return the contest that ended the search, most probable first."""
     if found.last is None:
         return ((AGREES, 1.0),)
-    at = found.final
+    as_it_is = AGREES if verdict in ("agrees", "closed") else UNKNOWN
     ranked = sorted(found.last.probabilities.items(), key=lambda item: -item[1])
     return tuple(
-        (_name(name, at), p) for name, p in ranked[:_MOST_STATED]
+        (name or as_it_is, p) for name, p in ranked[:_MOST_STATED]
         if p >= _LEAST_STATED or name == ranked[0][0]
     )
 
@@ -201,6 +198,7 @@ def _contest(found: Search) -> tuple[tuple[str, float], ...]:
 def _alternatives(step: Step, effect: str, at: Stage) -> tuple[tuple[str, float], ...]:
     """Return what else it may be, until nearly all of the probability is stated."""
     chances = step.probabilities
+    as_it_is = AGREES if at.assessed.quiet else UNKNOWN
     stated: list[tuple[str, float]] = []
     total = chances.get(effect, 0.0)
     for name, p in sorted(chances.items(), key=lambda item: -item[1]):
@@ -208,7 +206,7 @@ def _alternatives(step: Step, effect: str, at: Stage) -> tuple[tuple[str, float]
             continue
         if total > _STATED or p < _LEAST_STATED or len(stated) >= _MOST_STATED:
             break
-        stated.append((_name(name, at), p))
+        stated.append((name or as_it_is, p))
         total += p
     return tuple(stated)
 
@@ -247,7 +245,7 @@ def _named(baseline: Baseline, entry: Round, number: int, found: Search) -> Name
             if p > _EQUAL * entry.step.probabilities[entry.effect] and e not in (AGREES, UNKNOWN)
         ),
         gap=(was, now),
-        alike=(alike_percent(before.seen), alike_percent(after.seen)),
+        alike=(before.alike, after.alike),
         unseen=unseen,
         dropped=entry.dropped,
         share_percent=share,

@@ -13,7 +13,7 @@ from discover.posterior.grow import chosen_again, grown
 from discover.posterior.left_out import is_less, is_needed, left_out
 from discover.posterior.model import Composite
 from discover.posterior.step import Candidate, Step, ordered
-from discover.rows import Accuracy, accuracy, pooled_percent
+from discover.rows import Accuracy, accuracy, alike_percent, pooled_percent
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 
@@ -49,6 +49,11 @@ class Stage:
     def gap(self) -> float:
         """Percent, pooled over the fitted records."""
         return pooled_percent(self.seen)
+
+    @property
+    def alike(self) -> float:
+        """Percent, over the fitted records with every record counting alike."""
+        return alike_percent(self.seen)
 
     @property
     def unseen_gap(self) -> float | None:
@@ -90,12 +95,14 @@ class Search:
     last: Step | None
     """What might have been added and was not; None where only noise was left."""
     rejected: str | None = None
-    """An effect that is more probable but does not predict what was not fitted better."""
+    """An effect that is more probable but leaves no less, or predicts what was not fitted worse."""
 
     @property
     def final(self) -> Stage:
-        """The last stage."""
-        return self.rounds[-1].after if self.rounds else self.refitted
+        """The last stage; with nothing added the model as given, where a fit is no better."""
+        if self.rounds:
+            return self.rounds[-1].after
+        return self.refitted if _leaves_less(self.refitted, self.given) else self.given
 
 
 def stage(baseline: Baseline, assessed: Assessed) -> Stage:
@@ -162,7 +169,7 @@ def search(
     while len(rounds) < most:
         there = {p.fitted.id for p in here.assessed.model.terms if not p.held}
         open_ids = [e for e in effects if e not in there]
-        mended = Mended(baseline, here)
+        mended = Mended(baseline, here, given if not rounds else here)
         last, refused = _accepted(mended, grown(assessor, here.assessed, open_ids))
         rejected = refused[0] if refused else None
         added = last.best
@@ -199,6 +206,8 @@ class Mended:
     """Where the search starts."""
     here: Stage
     """Before the round."""
+    given: Stage
+    """Before it, with coefficients that no fit has changed."""
     _stages: dict[str, Stage] = field(default_factory=dict)
 
     def by(self, candidate: Candidate) -> Stage:
@@ -228,18 +237,21 @@ class Mended:
 
 
 def _accepted(mended: Mended, grown_step: Step) -> tuple[Step, tuple[str, ...]]:
-    """Return a step without what is more probable but predicts what is not fitted worse."""
+    """Return a step without what is more probable but leaves no less than was left before.
+
+    Nor may it predict what is not fitted worse.
+    """
     step = mended.compared(grown_step)
     refused: list[str] = []
-    for candidate in step.candidates:
-        if not candidate.id or candidate.assessed is None:
-            break
-        after = mended.by(candidate)
+    while step.best.id and step.best.assessed is not None:
+        candidate, after = step.best, mended.by(step.best)
         better = candidate.left is None or is_less(after.errors, mended.here.errors)
-        if better and not _is_worse(mended.here, after):
+        less = _leaves_less(after, mended.here) and _leaves_less(after, mended.given)
+        if better and less and not _is_worse(mended.here, after):
             break
         refused.append(candidate.id)
-    return step.without(refused), tuple(refused)
+        step = step.without([candidate.id])
+    return step, tuple(refused)
 
 
 def _settled(
@@ -274,6 +286,11 @@ def _settled(
             there = after
             dropped.append(name)
     return there, tuple(dropped)
+
+
+def _leaves_less(now: Stage, was: Stage) -> bool:
+    """Tell whether less is left, pooled or with every record counting alike."""
+    return now.gap < was.gap or now.alike < was.alike
 
 
 def _is_worse(was: Stage, now: Stage) -> bool:

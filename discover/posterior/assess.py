@@ -170,14 +170,15 @@ class Assessor:
     def curve_of(self, model: Composite) -> Part | None:
         """Return the departures of friction's curve where a model has that friction.
 
+        Friction of several terms has a curve of its own: what departs from it would not be stated.
         Curves that have a name among effects are open to models that hold such an effect.
         """
         if self.friction is None:
             return None
-        held = {t.fitted.id: t.fitted for t in model.terms}
-        if held.pop(self.friction.id, None) is None:
+        others = tuple(t.fitted for t in model.terms if t.fitted.id != self.friction.id)
+        if len(others) + 1 != len(model.terms):
             return None
-        curve = departures(self.friction, None if self.named else tuple(held.values()))
+        curve = departures(self.friction, None if self.named else others)
         return curve if curve.terms else None
 
 

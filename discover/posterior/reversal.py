@@ -137,9 +137,9 @@ def reversal_of(
     curve, own = assessor.friction, assessor.curve_of(assessed.model)
     if curve is None:
         return None
-    at = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == curve.id]
-    if own is None or len(at) != 1:
+    if own is None:
         return None
+    at = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == curve.id]
     space = predicting.space
     main = predicting.model.terms[at[0]].fitted
     left = space.sheet.target - predicting.local.force

@@ -263,3 +263,28 @@ def test_what_a_sign_holds_at_zero_hides_nothing():
     first = close_gap(Campaign("a spring", (one,)), "fit:inertia").rounds[0]
     assert first.effect == "stiffness"
     assert first.coefficient == pytest.approx(2e5, rel=0.01)
+
+
+def test_a_study_s_model_whose_friction_is_several_curves_is_refitted_as_it_is_stated():
+    """Its curves were fitted beside others that no stated model has: 1.1 % became 68 %."""
+
+    def law(t, x, v, a):
+        return device(t, x, v, a) + np.tanh(v / 0.004) * (60.0 + 24.0 * np.exp(-np.abs(v) / 0.02))
+
+    data = campaign(law, noise=0.002, held_out=(1, 6))
+    model = discover.run_study(data).model
+    friction = [t.id for t in model.bands[0].model.terms if t.id == "coulomb-friction"]
+    assert len(friction) > 1
+    found = close_gap(data, model)
+    assert found.final_gap_percent < 0.8 * found.gap_percent
+    assert found.final_held_out_gap_percent < 0.8 * found.held_out_gap_percent
+
+
+def test_a_study_s_model_agrees_with_the_records_that_it_was_found_in():
+    """Where but noise is left, no effect is added and no word fits but that it agrees."""
+    for law in (device, lambda t, x, v, a: device(t, x, v, a) + 4e7 * x**3):
+        data = campaign(law, held_out=(1, 6))
+        found = close_gap(data, discover.run_study(data).model)
+        assert found.verdict == "agrees"
+        assert found.final_gap_percent == pytest.approx(found.gap_percent, rel=1e-3)
+        assert found.to_dict()["contest"][0]["effect"] == "agrees"
