@@ -51,6 +51,9 @@ CORES = (
 """Chen & Chen, *Materials* 2025, 18(11), 2556, Eqs. 5 to 7; the last is a device without inertance.
 """
 
+TELLING = frozenset(i for c in CORES for i in (*c.required, *c.optional))
+"""Ids of terms that tell structures apart."""
+
 
 def family_of(ids: Collection[str]) -> str:
     """Return "fractional", "integer" or "mixed" (a fractional term beside inertia or damping).
@@ -72,8 +75,7 @@ def family_of(ids: Collection[str]) -> str:
     fractional = {i for c in CORES if c.family == "fractional" for i in c.required}
     if not fractional & set(ids):
         return "integer"
-    others = {i for c in CORES for i in (*c.required, *c.optional)} - fractional
-    return "mixed" if others & set(ids) else "fractional"
+    return "mixed" if (TELLING - fractional) & set(ids) else "fractional"
 
 
 def core_of(ids: Collection[str]) -> str:
@@ -94,8 +96,7 @@ def core_of(ids: Collection[str]) -> str:
     >>> core_of(["inertia", "viscous-damping", "coulomb-friction", "stiffness"])
     'IOIM-linear'
     """
-    telling = {i for c in CORES for i in (*c.required, *c.optional)}
-    own = telling & set(ids)
+    own = TELLING & set(ids)
     for core in CORES:
         if set(core.required) <= own <= {*core.required, *core.optional} and core.required:
             return core.name

@@ -11,7 +11,7 @@ from discover.records import Campaign, Finding, checked_campaign
 from discover.rows import RecordRows, record_rows
 from discover.study.options import StudyOptions
 from models.checks import InputError
-from models.cores import CORES, FRICTION, Core, core_of, family_of
+from models.cores import CORES, FRICTION, TELLING, Core, core_of, family_of
 from models.terms import TERMS, find_term
 
 _FEWEST = 4  # units, from which two bands are possible
@@ -65,15 +65,10 @@ def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
     return Prepared(observations, rows, device, single)
 
 
-def telling_ids() -> set[str]:
-    """Return the ids of terms that tell structures apart."""
-    return {i for c in CORES for i in (*c.required, *c.optional)}
-
-
 def _choices(options: StudyOptions) -> tuple[tuple[Core, ...], bool, tuple[str, ...]]:
     """Return the structures, whether there may be friction, and what may join."""
     if options.terms is None:
-        extras = [i for i in sorted(TERMS) if i not in telling_ids() and i != FRICTION]
+        extras = [i for i in sorted(TERMS) if i not in TELLING and i != FRICTION]
         return CORES, True, tuple(extras)
     ids = [i for i in options.terms if i != FRICTION]
     for identifier in ids:

@@ -26,7 +26,7 @@ from discover.words import (
     spread,
     zero_possible,
 )
-from models.cores import FRICTION, OTHER
+from models.cores import FRICTION, OTHER, TELLING
 from models.terms.between_tests import ONLY, OVER
 
 SURE = 0.8
@@ -73,6 +73,7 @@ def verdict_lines(document: Mapping[str, Any]) -> tuple[str, ...]:
     """
     lines = (
         f"Verdict: {headline(document)}.",
+        values_line(document),
         extras_line(document),
         friction_line(document),
         accuracy_line(document),
@@ -160,6 +161,26 @@ def _so_far(document: Mapping[str, Any]) -> str:
         and b["remainder_percent"]["interval"][0] > MOST_LEFT * b["noise_percent"]
     ]
     return f"; the best so far, {percent(max(lefts))} of the force is unexplained" if lefts else ""
+
+
+def values_line(document: Mapping[str, Any]) -> str:
+    """Say the numbers of each band's structure, with intervals; "" where none has a term."""
+    texts = []
+    for number, band in enumerate(document["bands"], start=1):
+        own = [_value(t) for t in band["terms"] if t["id"] in TELLING]
+        place = [f"band {number}"] if len(document["bands"]) > 1 else []
+        sure = band.get("probability")
+        if sure is not None and sure < SURE:
+            place.append(f"as {band['structure']}")
+        if own:
+            texts.append(": ".join(filter(None, (", ".join(place), listed(own)))))
+    return f"Values: {'; '.join(texts)}." if texts else ""
+
+
+def _value(term: Mapping[str, Any]) -> str:
+    """Return a term's name, coefficient and shape."""
+    size = quantity(term["coefficient"], term["unit"], term.get("interval"))
+    return ", ".join(filter(None, (f"{short_name(str(term['id']))} {size}", shape(term))))
 
 
 def extras(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:

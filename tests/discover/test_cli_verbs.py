@@ -41,7 +41,8 @@ def test_discover_prints_the_answer_and_what_is_next_and_writes_the_folder(campa
     names = [line.split(":")[0] for line in lines]
     lasting = [n for n in names if n not in ("Beside it", "Friction")]
     assert lasting == [
-        "Verdict", "Accuracy", "Left over", "Certainty", "Dean check", "Next test", "Next", "Report"
+        "Verdict", "Values", "Accuracy", "Left over", "Certainty", "Dean check", "Next test",
+        "Next", "Report",
     ]
     folder = here / "inerter-out" / "discover-laminar"
     headline = json.loads((folder / "study.json").read_text())["headline"]

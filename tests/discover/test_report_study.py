@@ -156,6 +156,7 @@ def test_verdict_says_in_each_line_one_thing_and_names_the_convention():
     }
     assert list(lines) == [
         "Verdict",
+        "Values",
         "Beside it",
         "Friction",
         "Accuracy",
