@@ -226,7 +226,7 @@ def _noisy(at: Stage) -> list[Finding]:
         Finding(
             "warning",
             f"In {count} of {len(levels)} records more than {_NOISY:g} % of the force counts as"
-            f" noise (up to {max(levels):.0f} %): it does not repeat from cycle to cycle. What"
+            f" noise (up to {max(levels):.0f} %): it does not repeat where the motion does. What"
             " rattles, chatters or slips at random is in it, and is not judged here. Look at the"
             " raw force, and sample faster.",
         )
