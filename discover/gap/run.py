@@ -269,7 +269,10 @@ def _mended_terms(baseline: Baseline, at: Stage, spread: Spread) -> tuple[Mended
     return (
         *held,
         *(
-            MendedTerm(p.fitted, _interval(spread, i, p.fitted))
+            MendedTerm(
+                p.fitted,
+                _interval(spread, i, p.fitted) if Number(i, None) in spread.numbers else None,
+            )
             for i, p in enumerate(at.predicting.terms)
             if not p.held
         ),

@@ -99,10 +99,12 @@ class Search:
 
     @property
     def final(self) -> Stage:
-        """The last stage; with nothing added the model as given, where a fit is no better."""
+        """The last stage; with nothing added the model as given, where a fit leaves more."""
         if self.rounds:
             return self.rounds[-1].after
-        return self.refitted if _leaves_less(self.refitted, self.given) else self.given
+        given, refitted = self.given, self.refitted
+        worse = given.gap < refitted.gap and given.alike < refitted.alike
+        return given if worse else refitted
 
 
 def stage(baseline: Baseline, assessed: Assessed) -> Stage:

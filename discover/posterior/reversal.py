@@ -135,9 +135,7 @@ def reversal_of(
         The same at the numbers that predict best: its friction is given.
     """
     curve, own = assessor.friction, assessor.curve_of(assessed.model)
-    if curve is None:
-        return None
-    if own is None:
+    if curve is None or own is None:
         return None
     at = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == curve.id]
     space = predicting.space
