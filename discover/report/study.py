@@ -14,9 +14,9 @@ from discover.plots.record_map import record_map
 from discover.report.environment import render
 from discover.report.files import coefficients_csv, page_files, table_csv
 from discover.report.records import only_drawn, picture, record_figures, record_section
+from discover.study.extras_words import extras
 from discover.study.verdict import (
     boundary_text,
-    extras,
     friction_text,
     next_purpose,
     structure_name,
