@@ -16,8 +16,9 @@ _LEAST, _MOST = -12, 0  # powers of STEP, of the force
 _BETTER = 0.05  # nats, by which a move has to gain
 _BEGIN = (-8, -8, -10)  # of the remainder, own friction, each independent error
 _STRIDES = (4, 1)  # powers of STEP moved at once: coarse first, then fine
-_TOGETHER = sorted(  # moves of one, two or three sizes by a power up or down, fewest sizes first
-    (m for m in product((-1, 0, 1), repeat=3) if any(m)), key=lambda m: sum(map(abs, m))
+_TOGETHER = sorted(  # moves of one size, or of one up and another down by the same power
+    (m for m in product((-1, 0, 1), repeat=3) if sum(map(abs, m)) == 1 or sorted(m) == [-1, 0, 1]),
+    key=lambda m: sum(map(abs, m)),
 )
 
 
@@ -91,7 +92,7 @@ class Place:
 
     @property
     def moves(self) -> list[tuple[int, ...]]:
-        """Moves of one size, two or three: independent errors all together, and each alone."""
+        """Moves of one size or two: independent errors all together, and each alone."""
         kinds = len(self.powers) - 2
         together = [(r, f, *[loud] * kinds) for r, f, loud in _TOGETHER]
         if kinds < 2:
@@ -104,9 +105,10 @@ class Place:
 
 
 def climb(value: Callable[[Place], float], start: Place, *, near: bool = False) -> Place:
-    """Return the place that no neighbour beats, moving one size or two or three at a time.
+    """Return the place that no neighbour beats.
 
-    A remainder and independent errors may each explain what is left, and the way from one to the
+    Sizes stand in for each other: where no size alone gains, one may go up as another goes down. A
+    remainder and independent errors may each explain what is left, and the way from one to the
     other leads through places that explain nothing. So there is a second search, from the best of
     a coarse grid of both.
 
@@ -131,15 +133,11 @@ def _climbed(
     """Return where one search ends, and the value there."""
     here, best = start, value(start)
     for stride in strides:
-        moved = True
-        while moved:
-            moved = False
-            for move in here.moves:
-                there = here.moved(move, stride)
-                if there == here:
-                    continue
-                found = value(there)
-                if found > best + _BETTER:
-                    here, best, moved = there, found, True
-                    break
+        moves = here.moves
+        while moves:
+            move = moves.pop(0)
+            there = here.moved(move, stride)
+            found = best if there == here else value(there)
+            if found > best + _BETTER:
+                here, best, moves = there, found, [move, *here.moves]  # on the same way first
     return here, best
