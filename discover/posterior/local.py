@@ -17,9 +17,10 @@ from models.checks import Array, Indices
 from models.terms import Scales
 
 _ITERATIONS = 12  # steps of the climb in shape parameters at most
-_ENOUGH = 0.02  # nats, of a step's gain
+_ENOUGH = 0.02  # nats, of a step's gain, or of what its linear form promises
 _NOTHING = 1e-200  # of a coefficient, in its unit: bounds are kept to 1e-300
-_HALVINGS = 6  # times at most that a step which gains nothing is shortened
+_SHORTENED = 6  # times at most that a step which gains nothing is tried
+_SHORTER = 0.4  # of its length, each time
 _STRIDE = 0.5  # of a shape parameter's value, or of its range, in one step at most
 
 
@@ -135,8 +136,8 @@ def fitted(
 ) -> Local:
     """Return a model at the values that are most probable at some sizes, from where it is.
 
-    By Gauss and Newton: a step to where the linear form is most probable, halved as long as that
-    is no better.
+    By Gauss and Newton: a step to where the linear form is most probable, shortened where that is
+    no better, as long as the linear form promises enough of it.
     """
     if not here.numbers:
         return here
@@ -144,8 +145,11 @@ def fitted(
     for _ in range(iterations):
         answer = judged(here, here.beside(space, curve), sizes)
         wanted = _within_bounds(here, answer, space.scales)
+        promised = _promised(here, answer, wanted)
         share, there, value = 1.0, here, best
-        for _ in range(_HALVINGS):
+        for _ in range(_SHORTENED):
+            if promised * share * (2.0 - share) < _ENOUGH:
+                return here
             values = _bounded(here, wanted, share, space.scales)
             trial = here.model.with_values(here.numbers, values)
             # A prior only takes away, so where the fit is no better the slopes are not needed.
@@ -154,7 +158,7 @@ def fitted(
                 value = _density(space, there, sizes, curve)
                 if value > best:
                     break
-            share *= 0.4
+            share *= _SHORTER
         else:
             return here
         gained, here, best = value - best, there, value
@@ -174,6 +178,13 @@ def _within_bounds(local: Local, answer: Judged, scales: Scales) -> Array:
     goal = np.linalg.solve(factor, spread * answer.side)
     found = lsq_linear(factor.T, goal, (low / spread, high / spread), method="bvls")
     return np.asarray(found.x) * spread
+
+
+def _promised(local: Local, answer: Judged, wanted: Array) -> float:
+    """Return the log density that the linear form gains from where it is to values (P,), nats."""
+    step = wanted - local.values
+    middle = 0.5 * (wanted + local.values)
+    return float(step @ (answer.side - answer.gram @ middle - middle / local.spread**2))
 
 
 def _range(local: Local, number: Number, scales: Scales) -> tuple[float, float]:
