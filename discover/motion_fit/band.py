@@ -209,7 +209,7 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         motion = _band_motion(record, usable, x, cutoff, displacement_noise)
         pieces = _pieces(time.size, cutoff * step)
         inner = slice(pieces[0][0], pieces[-1][0] + pieces[-1][1].size)
-        found = band_noise(motion, force, step, cutoff, inner)
+        found = band_noise(motion, x, force, step, cutoff, inner)
         follows = found.follows
     noise = found.spectrum
     mass = sum(float(np.sum(taper**2)) for _, taper in pieces)

@@ -1,15 +1,18 @@
 """The force's noise in a record that does not repeat: what no law of the motion explains.
 
 A model of any structure makes the force from the motion. So a wide set of functions of the motion,
-far more than a model has, is fitted to the force's spectrum, and what it leaves is the noise: the
+far more than a model has, is fitted to the force's spectrum. They are chosen one by one as long as
+each explains more than chance would. Then what they make together, and the displacement, may each
+act through any response that changes smoothly with frequency, as that of a resonance: in a narrow
+range of lines these responses are polynomials (the local polynomial method: Pintelon, Schoukens,
+Vandersteen, Barbe, *Mech. Syst. Signal Process.* 24 (2010) 573-595). What is left is the noise: the
 sensor's own, and what of the device does not follow the motion (ripple of gears, valves that
-flutter). The functions are chosen one by one as long as each explains more than chance would, and
-what their number takes from the noise is given back.
+flutter). What the number of fitted values takes from it is given back.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +38,12 @@ _SCALES = np.geomspace(3e-3, 1.0, 6)
 """Of the root mean square speed and displacement, over which friction may reverse."""
 _SLOW = 3  # polynomials of time that follow a drift
 _FEWEST_LINES = 12  # of the spectrum, from which noise can be told
+_SPAN = 18  # lines at least over which a response is a polynomial
+_SPANS = 500  # at most: of more lines each takes more
+_DEGREE = 2  # of the polynomials
+_NEXT = -0.5  # correlation of neighbouring lines of white noise, by the sine taper
+_LEAST_KEPT = 0.1  # of a line's noise: less tells nothing
+_SAME = 1e-6  # of the greatest singular value: no column of its own
 _LONG = 200_000  # samples, from which it matters how fast a length transforms
 _HALF_OCTAVE = float(np.sqrt(2.0))  # ratio of frequencies
 
@@ -50,7 +59,7 @@ class BandNoise:
 
 
 def band_noise(
-    motion: Motion, force: Array, step: float, cutoff: float, inner: slice
+    motion: Motion, measured: Array, force: Array, step: float, cutoff: float, inner: slice
 ) -> BandNoise:
     """Return the force's noise, and up to which frequency the force follows the motion.
 
@@ -62,13 +71,14 @@ def band_noise(
     ----------
     motion : Motion
         Of N samples, band-limited.
+    measured : ndarray, shape (N,)
+        The displacement as it was measured, m.
     force : ndarray, shape (N,)
         N.
     step : float
         Sampling interval, s.
     cutoff : float
-        Hz, end of the band in which the motion is known. Above it the force's own spectrum counts
-        where the motion explains none of it.
+        Hz, end of the band in which the motion is known.
     inner : slice
         Samples that count: derivatives at a record's ends rest on what is not there.
     """
@@ -76,43 +86,76 @@ def band_noise(
     if size > _LONG:  # a few samples less make many transforms several times as fast
         inner = slice(inner.start, inner.start + prev_fast_len(size, real=True))
     force = force[inner]
-    taper = np.hanning(force.size + 2)[1:-1]
-    scale = np.sqrt(2.0 * step / np.sum(taper**2))
-    taper *= scale
-
-    def spectrum(column: Array) -> Lines:
-        return np.asarray(np.fft.rfft((column - column.mean()) * taper)[1:])
-
-    each = [spectrum(column[inner]) for column in _functions_of(motion)]
-    target = spectrum(force)
     frequencies = np.asarray(np.fft.rfftfreq(force.size, step))[1:]
     width = float(frequencies[0])
     count = max(int(np.floor(cutoff / width)), min(_FEWEST_LINES, frequencies.size))
-    lines = np.stack([e[:count] for e in each])
-    coefficients, left, kept = _explained(lines, target[:count], frequencies[:count])
-    beyond = target[count:].copy()
+    taper = np.hanning(force.size + 2)[1:-1]
+    functions = [column[inner] for column in _functions_of(motion)]
+    lines = np.stack([_lines(f, taper)[:count] for f in functions])
+    target = _lines(force, taper)[:count]
+    coefficients = _explained(lines, target, frequencies[:count])
+    fitted = np.zeros(force.size)
     for place in np.flatnonzero(coefficients):
-        beyond -= coefficients[place] * each[place][count:]
-    beyond = np.abs(beyond) ** 2
-    slope = slope_of_lines(frequencies[:count], left, kept)
-    left = np.concatenate([left, np.minimum(beyond, np.abs(target[count:]) ** 2)])
-    kept = np.concatenate([kept, np.ones(beyond.size)])
+        fitted += coefficients[place] * functions[place]
+    left, kept = _unexplained(force - fitted, [measured[inner], fitted], frequencies, step)
     noise = smooth_spectrum(frequencies, left, width, 0.5 / step, kept)
+    slope = slope_of_lines(frequencies[:count], left[:count], kept[:count])
     noise = with_rise(noise, slope, 0.1 * width)
-    return BandNoise(noise, _follows(lines, target[:count], frequencies[:count]))
+    return BandNoise(noise, _follows(lines, target, frequencies[:count]))
 
 
-def _explained(lines: Lines, target: Lines, frequencies: Array) -> tuple[Array, Array, Array]:
-    """Return coefficients (K,), what they leave of each line's power, and the share it kept."""
+def _lines(column: Array, taper: Array) -> Lines:
+    """Return the lines of a column's spectrum under a taper, without that of its mean."""
+    return np.asarray(np.fft.rfft((column - column.mean()) * taper)[1:])
+
+
+def _unexplained(
+    force: Array, inputs: Sequence[Array], frequencies: Array, step: float
+) -> tuple[Array, Array]:
+    """Return the power (B,) of a force's lines that no smooth response to inputs explains.
+
+    And the share of a line's noise that is kept in it. Around each few lines the responses are
+    polynomials of the frequency, by lines weighed for the same noise.
+    """
+    taper = np.sin(np.pi * (np.arange(force.size) + 0.5) / force.size)
+    taper *= np.sqrt(4.0 * step / force.size)
+    target, driving = _lines(force, taper), np.stack([_lines(i, taper) for i in inputs])
+    whole = smooth_spectrum(frequencies, np.abs(target) ** 2, frequencies[0], 0.5 / step)
+    level = whole.at(frequencies)
+    target, driving = target / np.sqrt(level), driving / np.sqrt(level)
+    size = target.size
+    span = min(max(_SPAN, -(-size // _SPANS)), size)
+    hop = max(span // 3, 1)
+    degree = min(_DEGREE, span // (2 * len(driving)) - 1)
+    middle = np.arange(0, size, hop)  # of a window the lines from here to the next
+    first = np.clip(middle - hop, 0, size - span)
+    at = first[:, None] + np.arange(span)
+    powers = np.linspace(-1.0, 1.0, span) ** np.arange(degree + 1)[:, None]
+    columns = (driving[:, at][:, None] * powers[:, None]).reshape(-1, *at.shape).transpose(1, 2, 0)
+    sizes = np.linalg.norm(columns, axis=1, keepdims=True)
+    basis, values, _ = np.linalg.svd(
+        columns / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False
+    )
+    basis *= (values > _SAME * values[:, :1])[:, None]
+    beside = np.eye(span) - basis @ basis.conj().transpose(0, 2, 1)
+    left = np.abs(beside @ target[at][..., None])[..., 0] ** 2
+    kept = np.sum(np.abs(beside) ** 2, axis=2)
+    kept += 2.0 * _NEXT * np.sum((beside[..., 1:] * beside[..., :-1].conj()).real, axis=2)
+    lines = np.arange(size)
+    own = lines // hop, lines - first[lines // hop]
+    return level * left[own], np.maximum(kept[own], _LEAST_KEPT)
+
+
+def _explained(lines: Lines, target: Lines, frequencies: Array) -> Array:
+    """Return coefficients (K,) of functions, each pass weighed by the noise that the last left."""
     width, end = float(frequencies[0]), float(frequencies[-1])
-    left = np.abs(target) ** 2
-    level = smooth_spectrum(frequencies, left, width, end)
+    level = smooth_spectrum(frequencies, np.abs(target) ** 2, width, end)
     for _ in range(_PASSES):
         weight = 1.0 / np.sqrt(level.at(frequencies))
         coefficients, kept = _selected(lines * weight, target * weight)
         left = np.abs(target - coefficients @ lines) ** 2
         level = smooth_spectrum(frequencies, left, width, end, kept)
-    return coefficients, left, kept
+    return coefficients
 
 
 def _follows(lines: Lines, target: Lines, frequencies: Array) -> float:
@@ -125,7 +168,7 @@ def _follows(lines: Lines, target: Lines, frequencies: Array) -> float:
         whole = np.abs(target[:end]) ** 2
         if np.sum(whole[below:]) > np.sum(whole[:below]):
             return float(frequencies[end - 1])
-        coefficients, _, _ = _explained(lines[:, :below], target[:below], frequencies[:below])
+        coefficients = _explained(lines[:, :below], target[:below], frequencies[:below])
         left = target[below:end] - coefficients @ lines[:, below:end]
         if np.sum(np.abs(left) ** 2) < 0.5 * np.sum(whole[below:]):
             return float(frequencies[end - 1])

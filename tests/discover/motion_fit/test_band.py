@@ -173,6 +173,32 @@ def test_noise_that_rises_to_low_frequencies_is_seen_in_the_lowest_lines():
     assert 0.5 < np.mean(ratios) < 2.0
 
 
+def test_what_a_resonance_makes_of_the_motion_is_no_noise():
+    """A mass behind a spring, resonant within the band: its noise within a quarter, in the middle.
+
+    Its force is exact at every line of the motion, by the sum of the two impedances.
+    """
+    ratios = []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        time = STEP * np.arange(16_000)
+        omega = 2.0 * np.pi * np.arange(10, 320) / time.size / STEP
+        wave = rng.standard_normal(omega.size) + 1j * rng.standard_normal(omega.size)
+        spring = 60.0 * (2.0 * np.pi * 4.0) ** 2
+        behind = -60.0 * omega**2 + 300.0j * omega
+        stiffness = spring * behind / (spring + behind) - 10.0 * omega**2
+        turns = np.exp(1j * np.outer(time, omega))
+        x = 1e-3 * np.real(turns @ (wave / omega))
+        force = 1e-3 * np.real(turns @ (stiffness * wave / omega))
+        noise = 0.02 * np.std(force)
+        record = Record(
+            "r.csv", time, force + noise * rng.standard_normal(time.size),
+            x + 1e-7 * rng.standard_normal(time.size),
+        )
+        ratios.append(observe_band(record, slice(None), "random").force_noise / noise)
+    assert 0.8 < np.median(ratios) < 1.25
+
+
 def test_noise_that_drifts_is_as_great_as_it_is_beside_the_mean():
     """In the middle over records: what it adds to a record's mean is a guess, and no noise."""
     time = np.arange(3000) / 100.0
