@@ -21,15 +21,18 @@ class Core:
     """Ids of terms that it may have besides."""
     within: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Range of a term's shape parameter, by the term's id, where it is not the term's own."""
+    alone: tuple[str, ...] = ()
+    """Ids of terms each of which makes it by itself, too."""
 
     @property
     def variants(self) -> tuple[tuple[str, ...], ...]:
         """Every set of ids that is this structure."""
-        return tuple(
+        sets = [
             (*self.required, *more)
             for size in range(len(self.optional) + 1)
             for more in combinations(self.optional, size)
-        )
+        ]
+        return (*sets, *((i,) for i in self.alone))
 
 
 FRICTION = "coulomb-friction"
@@ -46,12 +49,16 @@ CORES = (
         "IOIM-turbulent", "integer", ("inertia", "power-law-damping"),
         ("viscous-damping", "quadratic-damping"), {"power-law-damping": (1.5, 2.0)},
     ),
-    Core(OTHER, "integer", (), ("viscous-damping", "quadratic-damping")),
+    Core(
+        OTHER, "integer", (), ("viscous-damping", "quadratic-damping"),
+        alone=("power-law-damping",),
+    ),
 )  # fmt: skip
-"""Chen & Chen, *Materials* 2025, 18(11), 2556, Eqs. 5 to 7; the last is a device without inertance.
+"""Chen & Chen, *Materials* 2025, 18(11), 2556, Eqs. 5 to 7; the last is a device without inertance,
+whose loss may go with any power of speed, as in viscous dampers of buildings.
 """
 
-TELLING = frozenset(i for c in CORES for i in (*c.required, *c.optional))
+TELLING = frozenset(i for c in CORES for i in (*c.required, *c.optional, *c.alone))
 """Ids of terms that tell structures apart."""
 
 

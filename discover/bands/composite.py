@@ -13,9 +13,14 @@ from models.constitutive import FittedTerm
 def composite_of(
     banded: Banded,
     variants: Sequence[Variant],
-    shared: Sequence[FittedTerm],
+    friction: Sequence[FittedTerm],
+    joined: Sequence[FittedTerm],
+    before: Composite | None = None,
 ) -> Composite:
     """Return each band's best variant in its units, and what all bands share.
+
+    A fit of it starts from the coefficients that the same terms had `before`: of one, a joint's
+    motion is not that of the device.
 
     Parameters
     ----------
@@ -23,12 +28,21 @@ def composite_of(
         The division.
     variants : sequence of Variant
         That its places stand for.
-    shared : sequence of FittedTerm
-        Friction, and what else the device has.
+    friction : sequence of FittedTerm
+        That all bands share: one, or none.
+    joined : sequence of FittedTerm
+        What else the device has.
+    before : Composite, optional
+        A model of the device with less.
     """
+    known = {} if before is None else {p.fitted.id: p.fitted.coefficient for p in before.terms}
+
+    def begun(term: FittedTerm) -> FittedTerm:
+        return FittedTerm(term.id, known.get(term.id) or term.coefficient, term.shape)
+
     placed = []
     for band, place in enumerate(banded.variants):
         share = None if banded.bands == 1 else tuple(float(s) for s in banded.shares[band])
         for part in variants[place].parts:
-            placed += [Placed(t, share) for t in part.terms]
-    return Composite((*placed, *(Placed(t) for t in shared)))
+            placed += [Placed(begun(t), share) for t in part.terms]
+    return Composite((*placed, *map(Placed, joined), *(Placed(begun(t)) for t in friction)))

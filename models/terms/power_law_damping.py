@@ -1,4 +1,4 @@
-"""Power-law damping: turbulent friction, with a power of speed between one and two."""
+"""Power-law damping: turbulent friction, or a damper whose orifices make another power of speed."""
 
 import numpy as np
 
