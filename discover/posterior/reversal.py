@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.special import logsumexp
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.covariance import Sizes
-from discover.posterior.local import fitted, local_of
+from discover.posterior.local import Local, fitted, judged, local_of
 from discover.posterior.metric import Comparison, curve_given
 from discover.posterior.model import Composite, Number
 from discover.posterior.own_share import own_share
@@ -79,6 +79,13 @@ class Reversal:
     """Standard deviation between records, over the friction."""
     fading: Fading
     """What falls away beside it."""
+    beside: tuple[float, float] | None = None
+    """N: standard deviations of what slides and of what falls away, these curves given; None where
+    the whole curve is what counts."""
+
+    def deviations(self, numbers: Sequence[Number], covariance: Array) -> tuple[float, float]:
+        """Return the standard deviations of what slides and falls away, as `Fading` does."""
+        return self.beside or self.fading.deviations(numbers, covariance)
 
     @property
     def sliding(self) -> float:
@@ -108,16 +115,32 @@ def with_few_curves(
     free = [n for n in wide.numbers if n.shape is None or n.term not in given]
     sizes = predicting.place.sizes(space.own_unit)
     begun = local_of(space, assessor.evaluator, wide, free)
-    best = fitted(space, assessor.evaluator, begun, sizes, None).model
-    parts = [best.terms[i].fitted for i in given]
+    best = fitted(space, assessor.evaluator, begun, sizes, None)
+    parts = [best.model.terms[i].fitted for i in given]
+    sliding = [i for i, t in zip(given, parts, strict=True) if t.id == name]
+    surely = [_deviation(assessed, best, own) for own in (sliding, set(given) - set(sliding))]
     least = _NOTHING * sum(t.coefficient for t in parts)
     kept = tuple(t for t in parts if t.coefficient > least) or (parts[0],)
     own = FittedTerm(name, replace(found, terms=kept).sliding, whole.fitted.shape)
     aligned = [
         replace(whole, fitted=own) if i == at else p
-        for i, p in enumerate(best.terms[: len(terms)])
+        for i, p in enumerate(best.model.terms[: len(terms)])
     ]
-    return replace(found, terms=kept), Composite(tuple(aligned))
+    found = replace(found, terms=kept, beside=(surely[0], surely[1]))
+    return found, Composite(tuple(aligned))
+
+
+def _deviation(assessed: Assessed, local: Local, places: Collection[int]) -> float:
+    """Return the standard deviation of a sum of terms beside what the model leaves.
+
+    How far the sum is from what is most probable there widens it.
+    """
+    space = assessed.space
+    sizes = assessed.place.sizes(space.own_unit)
+    solved = judged(local, local.beside(space, None), sizes).solved
+    own = np.array([n.shape is None and n.term in places for n in local.numbers])
+    away = float(np.sum((solved.mean - local.values)[own]))
+    return float(np.sqrt(solved.covariance[np.ix_(own, own)].sum() + away**2))
 
 
 def reversal_of(

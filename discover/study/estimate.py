@@ -139,7 +139,7 @@ def _friction(reversal: Reversal, spread: Spread) -> Sequence[TermEstimate]:
 
     How surely is known what slides, the curves of friction itself share; what falls away, others.
     """
-    surely = reversal.fading.deviations(spread.numbers, spread.covariance)
+    surely = reversal.deviations(spread.numbers, spread.covariance)
     result = []
     for t in reversal.terms:
         alike = [o for o in reversal.terms if (o.id == reversal.name) == (t.id == reversal.name)]

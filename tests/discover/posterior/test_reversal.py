@@ -7,6 +7,7 @@ import pytest
 
 from discover.posterior.model import Composite, Number, Placed
 from discover.posterior.reversal import Fading, reversal_of, with_few_curves
+from discover.posterior.spread import spread_of
 from models.constitutive import FittedTerm
 from tests.discover.posterior.small import (
     APART,
@@ -127,6 +128,23 @@ def test_deviations_of_what_slides_and_falls_by_hand():
     assert sliding**2 == pytest.approx(3.0 + 1.0 + 1.125 - 2.0 * 0.375 * 0.6)
     alone = fading.deviations([Number(1, None), main], np.diag([9.0, 2.0]))
     assert np.square(alone) == pytest.approx([3.0 + 0.5625 * 2.0, 3.0 + 0.0625 * 2.0])
+
+
+def test_beside_a_remainder_friction_is_as_sure_as_the_few_curves_that_make_it(found):
+    """A force that no term has leaves 40 N of friction told, beside all that a curve may be."""
+
+    def law(t, x, v, a):
+        return FRICTIONS["path"](t, x, v, a) + 3.0 * np.sin(x / 4e-3)
+
+    assessed = assessed_of(law)
+    assert not assessed.quiet
+    reversal, model = with_few_curves(assessed.assessor, assessed, assessed.predicting)
+    spread = spread_of(assessed, model)
+    sliding, falling = reversal.deviations(spread.numbers, spread.covariance)
+    assert abs(reversal.sliding - 40.0) < 2.0 * sliding < 20.0
+    assert falling >= 0.0
+    _, quiet = found["path"]
+    assert quiet.beside is None
 
 
 def test_without_friction_there_is_no_reversal():
