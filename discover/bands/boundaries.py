@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.bands.divisions import gradual, refined, sharp
+from discover.bands.found import Found
 from discover.bands.search import Banded, BandSearch
 from models.checks import Array
 
@@ -30,20 +31,26 @@ class Boundary:
     band's model."""
 
 
-def boundaries_of(search: BandSearch, banded: Banded) -> tuple[Boundary, ...]:
-    """Return the boundaries of a division, each with the others held."""
-    return tuple(_boundary(search, banded, b) for b in range(banded.bands - 1))
+def boundaries_of(found: Found) -> tuple[Boundary, ...]:
+    """Return the boundaries of an answer's bands, each with the others held.
+
+    A place is no surer than the structures: its likelihood is taken to the same power.
+    """
+    return tuple(
+        _boundary(found.search, found.banded, b, found.power)
+        for b in range(found.banded.bands - 1)
+    )
 
 
-def _boundary(search: BandSearch, banded: Banded, lower: int) -> Boundary:
+def _boundary(search: BandSearch, banded: Banded, lower: int, power: float) -> Boundary:
     values = search.coordinates[banded.coordinate]
     whole = _merged(banded.shares, lower)
     parts, ends = sharp(values)
     shares, kept = refined(whole, lower, parts)
     few = search.only(banded.variants)
     start = np.tile(np.arange(banded.bands), (len(shares), 1))
-    found = few.many(banded.place, banded.scale, shares, start).value
-    chances = np.exp(found - logsumexp(found))
+    values_of = power * few.many(banded.place, banded.scale, shares, start).value
+    chances = np.exp(values_of - logsumexp(values_of))
     ends = ends[kept]
     bracket = banded.brackets[lower]
     total = np.cumsum(chances)
@@ -54,7 +61,7 @@ def _boundary(search: BandSearch, banded: Banded, lower: int) -> Boundary:
     own = banded.shares[lower]
     if not np.any((own > 0.0) & (own < whole[lower])):
         return Boundary(middle, bracket, interval, None)
-    place, width, near = _gradual(few, banded, lower, whole, values)
+    place, width, near = _gradual(few, banded, lower, whole, values, power)
     low, high = min(interval[0], near[0]), max(interval[1], near[1])
     return Boundary(place, bracket, (low, high), width)
 
@@ -68,7 +75,7 @@ def _merged(shares: Array, lower: int) -> Array:
 
 
 def _gradual(
-    search: BandSearch, banded: Banded, lower: int, whole: Array, values: Array
+    search: BandSearch, banded: Banded, lower: int, whole: Array, values: Array, power: float
 ) -> tuple[float, float, tuple[float, float]]:
     """Return the place of a gradual change, its width, and the place's interval."""
     inside = values[whole[lower] > 0.5]
@@ -82,7 +89,7 @@ def _gradual(
     )
     shares = np.concatenate([rest_below, both, rest_above], axis=1)
     start = np.tile(np.arange(banded.bands), (len(shares), 1))
-    found = search.many(banded.place, banded.scale, shares, start).value
+    found = power * search.many(banded.place, banded.scale, shares, start).value
     best = int(found.argmax())
     of_place = logsumexp(found.reshape(_WIDTHS.size, places.size), axis=0)
     total = np.cumsum(np.exp(of_place - logsumexp(of_place)))
@@ -92,21 +99,21 @@ def _gradual(
     return float(place[best]), float(width[best]), near
 
 
-def line_evidence(search: BandSearch, banded: Banded, upper: Array) -> Array:
-    """Return the log evidence (D,) of other divisions between the two lowest bands.
+def line_evidence(found: Found, upper: Array) -> Array:
+    """Return the log evidence (D,), to the answer's power, of other divisions of its lowest bands.
 
     Parameters
     ----------
-    search : BandSearch
-        That found the bands.
-    banded : Banded
-        Two bands or more.
+    found : Found
+        Of two bands or more: those between the two lowest ones are divided anew.
     upper : ndarray of bool, shape (D, U)
         Which of their units would be in the upper one.
     """
+    search, banded = found.search, found.banded
     whole = banded.shares[0] + banded.shares[1]
     above = np.where(upper, whole, 0.0)
     rest = np.broadcast_to(banded.shares[2:], (len(upper), banded.bands - 2, whole.size))
     shares = np.concatenate([np.stack([whole - above, above], axis=1), rest], axis=1)
     start = np.tile(np.arange(banded.bands), (len(shares), 1))
-    return search.only(banded.variants).many(banded.place, banded.scale, shares, start).value
+    few = search.only(banded.variants)
+    return found.power * few.many(banded.place, banded.scale, shares, start).value

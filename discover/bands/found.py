@@ -10,6 +10,7 @@ from discover.bands.search import Banded, BandSearch
 from discover.bands.variants import Grids
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.model import Composite, Evaluator
+from discover.posterior.own_share import own_share
 from discover.posterior.setup import space_of
 from discover.posterior.step import Step
 from discover.posterior.structures import Variant
@@ -114,6 +115,15 @@ class Found:
     def quiet(self) -> bool:
         """True where all but noise may be explained: by the structures on their grid, or fitted."""
         return self.banded.quiet or self.assessed.quiet
+
+    @cached_property
+    def power(self) -> float:
+        """To which likelihoods of structures and places are taken: 1 where but noise may be left.
+
+        Else the share of the lines that say something of their own (a power posterior: Miller and
+        Dunson, *J. Am. Stat. Assoc.* 114 (2019) 1113-1125).
+        """
+        return 1.0 if self.quiet else own_share(self.assessed.predicting)
 
     @cached_property
     def assessed(self) -> Assessed:

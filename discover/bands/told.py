@@ -15,7 +15,7 @@ from scipy.special import logsumexp
 
 from discover.bands.found import Found
 from discover.posterior.left_out import predicted, predicts_best
-from discover.posterior.own_share import own_lines, own_share
+from discover.posterior.own_share import own_lines
 from models.checks import Array
 
 Mask = NDArray[np.bool_]
@@ -25,13 +25,11 @@ _LEAST = 1e-300  # of a probability, so that it has a logarithm
 def told(found: Found) -> Found:
     """Return the answer; where more is left than noise it is told with less surety.
 
-    The likelihood of each structure is taken to the power of the share of the lines that say
-    something of their own (a power posterior: Miller and Dunson, *J. Am. Stat. Assoc.* 114 (2019)
-    1113-1125).
+    The likelihood of each structure is taken to a power, `Found.power`.
     """
     if found.quiet:
         return found
-    power = own_share(found.assessed.predicting)
+    power = found.power
     alike = [way for way in found.rivals if way.banded.bands == found.banded.bands == 1]
     first, *others = (_at_power(way, power) for way in (found, *alike))
     return _mixed([first, *others]) if others else first

@@ -96,7 +96,7 @@ def _study(
 ) -> Study:
     device = campaign.device
     coordinate, scale = _coordinate(answer, device, chosen)
-    ends = boundaries_of(answer.search, answer.banded)
+    ends = boundaries_of(answer)
     edges = [None, *(scale * e.value for e in ends), None]
     place = [_band_of(o, ends, answer.banded.coordinate) for o in prepared.observations]
     accuracies = [
@@ -231,7 +231,7 @@ def _exponent(answer: Found) -> AmplitudeExponent | None:
     def evidence(upper: NDArray[np.bool_]) -> Array:
         whole = np.zeros((len(upper), len(units)), dtype=bool)
         whole[:, inside] = upper
-        return line_evidence(answer.search, banded, whole)
+        return line_evidence(answer, whole)
 
     return amplitude_exponent(frequency, amplitude, evidence)
 
