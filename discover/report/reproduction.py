@@ -54,7 +54,7 @@ def reproduction_lines(result: Reproduction) -> tuple[str, ...]:
         worst = max(row.difference for row in result.identification)
         lines.append(
             f"Identification: variable projection meets the genetic algorithm to "
-            f"{significant(worst, 2)} with at least {fewest:.0f} times fewer evaluations."
+            f"{significant(worst, 1)} with at least {fewest:.0f} times fewer evaluations."
         )
     lines.append("Table 2: quoted only, its measurements are not public.")
     return tuple(lines)
