@@ -41,9 +41,10 @@ _FEWEST_LINES = 12  # of the spectrum, from which noise can be told
 _SPAN = 18  # lines at least over which a response is a polynomial
 _SPANS = 500  # at most: of more lines each takes more
 _DEGREE = 2  # of the polynomials
+_AT_ONCE = 100_000  # lines whose windows are formed at a time
 _NEXT = -0.5  # correlation of neighbouring lines of white noise, by the sine taper
 _LEAST_KEPT = 0.1  # of a line's noise: less tells nothing
-_SAME = 1e-6  # of the greatest singular value: no column of its own
+_SAME = 1e-11  # of the greatest square of a singular value: no column of its own
 _LONG = 200_000  # samples, from which it matters how fast a length transforms
 _HALF_OCTAVE = float(np.sqrt(2.0))  # ratio of frequencies
 
@@ -127,23 +128,42 @@ def _unexplained(
     span = min(max(_SPAN, -(-size // _SPANS)), size)
     hop = max(span // 3, 1)
     degree = min(_DEGREE, span // (2 * len(driving)) - 1)
-    middle = np.arange(0, size, hop)  # of a window the lines from here to the next
-    first = np.clip(middle - hop, 0, size - span)
-    at = first[:, None] + np.arange(span)
     powers = np.linspace(-1.0, 1.0, span) ** np.arange(degree + 1)[:, None]
-    columns = (driving[:, at][:, None] * powers[:, None]).reshape(-1, *at.shape).transpose(1, 2, 0)
+    middle = np.arange(0, size, hop)  # of a window the lines from here to the next
+    left, kept = np.empty(size), np.empty(size)
+    for some in np.array_split(middle, -(-middle.size * span // _AT_ONCE)):
+        first = np.clip(some - hop, 0, size - span)
+        at = first[:, None] + np.arange(span)
+        columns = (driving[:, at][:, None] * powers[:, None]).reshape(-1, *at.shape)
+        beside, share = _beside(target[at], columns.transpose(1, 2, 0))
+        lines = np.arange(some[0], min(some[-1] + hop, size))
+        own = (lines - some[0]) // hop, lines - first[(lines - some[0]) // hop]
+        left[lines], kept[lines] = beside[own], share[own]
+    return level * left, np.maximum(kept, _LEAST_KEPT)
+
+
+def _beside(target: Lines, columns: Lines) -> tuple[Array, Array]:
+    """Return the power (W, S) of lines in windows that columns (W, S, P) do not explain.
+
+    And the share of a line's noise that is kept in it, where neighbouring lines are correlated.
+    """
     sizes = np.linalg.norm(columns, axis=1, keepdims=True)
-    basis, values, _ = np.linalg.svd(
-        columns / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False
-    )
-    basis *= (values > _SAME * values[:, :1])[:, None]
-    beside = np.eye(span) - basis @ basis.conj().transpose(0, 2, 1)
-    left = np.abs(beside @ target[at][..., None])[..., 0] ** 2
-    kept = np.sum(np.abs(beside) ** 2, axis=2)
-    kept += 2.0 * _NEXT * np.sum((beside[..., 1:] * beside[..., :-1].conj()).real, axis=2)
-    lines = np.arange(size)
-    own = lines // hop, lines - first[lines // hop]
-    return level * left[own], np.maximum(kept[own], _LEAST_KEPT)
+    columns = columns / np.where(sizes > 0.0, sizes, 1.0)
+    values, turn = np.linalg.eigh(columns.conj().transpose(0, 2, 1) @ columns)
+    there = values > _SAME * values[:, -1:]
+    turn *= (there / np.sqrt(np.where(there, values, 1.0)))[:, None]
+    basis = columns @ turn
+    turned = basis.conj()
+    left = target - (basis @ (turned.transpose(0, 2, 1) @ target[..., None]))[..., 0]
+    kept = 1.0 - np.sum(np.abs(basis) ** 2, axis=2)
+    # The noise of a line beside a projection P is that of (1 - P) C (1 - P): of C its diagonal and
+    # what is next to it.
+    next_to = np.sum((basis[:, :-1] * turned[:, 1:]).real, axis=2)
+    across = turned[:, 1:].transpose(0, 2, 1) @ basis[:, :-1]
+    both = np.sum(((basis @ across) * turned).real, axis=2)
+    both[:, :-1] -= next_to
+    both[:, 1:] -= next_to
+    return np.abs(left) ** 2, kept + 2.0 * _NEXT * both
 
 
 def _explained(lines: Lines, target: Lines, frequencies: Array) -> Array:
