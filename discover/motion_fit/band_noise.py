@@ -1,13 +1,15 @@
 """The force's noise in a record that does not repeat: what no law of the motion explains.
 
 A model of any structure makes the force from the motion. So a wide set of functions of the motion,
-far more than a model has, is fitted to the force's spectrum. They are chosen one by one as long as
-each explains more than chance would. Then what they make together, and the displacement, may each
-act through any response that changes smoothly with frequency, as that of a resonance: in a narrow
-range of lines these responses are polynomials (the local polynomial method: Pintelon, Schoukens,
-Vandersteen, Barbe, *Mech. Syst. Signal Process.* 24 (2010) 573-595). What is left is the noise: the
+far more than a model has, is fitted to the force's spectrum, and what it leaves is the noise: the
 sensor's own, and what of the device does not follow the motion (ripple of gears, valves that
-flutter). What the number of fitted values takes from it is given back.
+flutter). The functions are chosen one by one as long as each explains more than chance would, and
+what their number takes from the noise is given back.
+
+None of them has a resonance. So what they make together, and the displacement, may each act through
+any response that changes smoothly with frequency, where that explains more than chance would: in a
+narrow range of lines these responses are polynomials (the local polynomial method: Pintelon,
+Schoukens, Vandersteen, Barbe, *Mech. Syst. Signal Process.* 24 (2010) 573-595).
 """
 
 from __future__ import annotations
@@ -79,7 +81,8 @@ def band_noise(
     step : float
         Sampling interval, s.
     cutoff : float
-        Hz, end of the band in which the motion is known.
+        Hz, end of the band in which the motion is known. Above it the force's own spectrum counts
+        where the motion explains none of it.
     inner : slice
         Samples that count: derivatives at a record's ends rest on what is not there.
     """
@@ -87,22 +90,31 @@ def band_noise(
     if size > _LONG:  # a few samples less make many transforms several times as fast
         inner = slice(inner.start, inner.start + prev_fast_len(size, real=True))
     force = force[inner]
+    taper = np.hanning(force.size + 2)[1:-1]
+    scale = np.sqrt(2.0 * step / np.sum(taper**2))
+    taper *= scale
     frequencies = np.asarray(np.fft.rfftfreq(force.size, step))[1:]
     width = float(frequencies[0])
     count = max(int(np.floor(cutoff / width)), min(_FEWEST_LINES, frequencies.size))
-    taper = np.hanning(force.size + 2)[1:-1]
     functions = [column[inner] for column in _functions_of(motion)]
-    lines = np.stack([_lines(f, taper)[:count] for f in functions])
-    target = _lines(force, taper)[:count]
-    coefficients = _explained(lines, target, frequencies[:count])
+    lines = np.stack([_lines(column, taper)[:count].copy() for column in functions])
+    target = _lines(force, taper)
+    coefficients, left, kept = _explained(lines, target[:count], frequencies[:count])
     fitted = np.zeros(force.size)
     for place in np.flatnonzero(coefficients):
         fitted += coefficients[place] * functions[place]
-    left, kept = _unexplained(force - fitted, [measured[inner], fitted], frequencies, step)
+    beyond = np.abs(_lines(force - fitted, taper)[count:]) ** 2
+    left = np.concatenate([left, np.minimum(beyond, np.abs(target[count:]) ** 2)])
+    kept = np.concatenate([kept, np.ones(beyond.size)])
     noise = smooth_spectrum(frequencies, left, width, 0.5 / step, kept)
+    less, share = _unexplained(force - fitted, [measured[inner], fitted], frequencies, step)
+    lower = smooth_spectrum(frequencies, less, width, 0.5 / step, share)
+    inside = frequencies[:count]
+    if _is_more_than_chance(noise.at(inside), lower.at(inside), share[:count]):
+        left, kept, noise = less, share, lower
     slope = slope_of_lines(frequencies[:count], left[:count], kept[:count])
     noise = with_rise(noise, slope, 0.1 * width)
-    return BandNoise(noise, _follows(lines, target, frequencies[:count]))
+    return BandNoise(noise, _follows(lines, target[:count], frequencies[:count]))
 
 
 def _lines(column: Array, taper: Array) -> Lines:
@@ -166,16 +178,26 @@ def _beside(target: Lines, columns: Lines) -> tuple[Array, Array]:
     return np.abs(left) ** 2, kept + 2.0 * _NEXT * both
 
 
-def _explained(lines: Lines, target: Lines, frequencies: Array) -> Array:
-    """Return coefficients (K,) of functions, each pass weighed by the noise that the last left."""
+def _is_more_than_chance(level: Array, less: Array, share: Array) -> bool:
+    """Tell whether noise at a level `less` at each line is more likely than at `level`.
+
+    By the Bayesian information criterion: what leaves it spends what it does not keep of the noise.
+    """
+    gain = float(np.sum(np.log(level / less)))
+    return gain > float(np.sum(1.0 - share)) * float(np.log(2.0 * level.size))
+
+
+def _explained(lines: Lines, target: Lines, frequencies: Array) -> tuple[Array, Array, Array]:
+    """Return coefficients (K,), what they leave of each line's power, and the share it kept."""
     width, end = float(frequencies[0]), float(frequencies[-1])
-    level = smooth_spectrum(frequencies, np.abs(target) ** 2, width, end)
+    left = np.abs(target) ** 2
+    level = smooth_spectrum(frequencies, left, width, end)
     for _ in range(_PASSES):
         weight = 1.0 / np.sqrt(level.at(frequencies))
         coefficients, kept = _selected(lines * weight, target * weight)
         left = np.abs(target - coefficients @ lines) ** 2
         level = smooth_spectrum(frequencies, left, width, end, kept)
-    return coefficients
+    return coefficients, left, kept
 
 
 def _follows(lines: Lines, target: Lines, frequencies: Array) -> float:
@@ -188,7 +210,7 @@ def _follows(lines: Lines, target: Lines, frequencies: Array) -> float:
         whole = np.abs(target[:end]) ** 2
         if np.sum(whole[below:]) > np.sum(whole[:below]):
             return float(frequencies[end - 1])
-        coefficients = _explained(lines[:, :below], target[:below], frequencies[:below])
+        coefficients, _, _ = _explained(lines[:, :below], target[:below], frequencies[:below])
         left = target[below:end] - coefficients @ lines[:, below:end]
         if np.sum(np.abs(left) ** 2) < 0.5 * np.sum(whole[below:]):
             return float(frequencies[end - 1])

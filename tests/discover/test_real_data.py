@@ -67,15 +67,6 @@ def test_emps_searched_freely_differs_by_direction_and_has_no_fractional_term(em
     assert (band.structure, band.family) == ("IOIM-linear", "integer")
     assert "fractional-derivative" not in found
     assert {"asymmetric-damping", "force-offset"} & set(found)
-
-
-@pytest.mark.sweep
-@needs_data
-@pytest.mark.xfail(
-    strict=True, reason="friction that depends on place joins (61 %), and a fall that is not told"
-)
-def test_emps_searched_freely_has_nothing_beside_that_is_not_told(emps):
-    (band,) = emps.bands
     told = {e.term.fitted.id for e in band.extras if not zero_possible(e.term.interval)}
     assert told == {e.term.fitted.id for e in band.extras}
 
@@ -89,7 +80,7 @@ def test_emps_searched_freely_gives_its_published_inertance(emps):
 
 @pytest.mark.sweep
 @needs_data
-@pytest.mark.xfail(strict=True, reason="197 N s/m and 22.6 N are found, in three curves")
+@pytest.mark.xfail(strict=True, reason="189 N s/m and 22.1 N are found, in three curves")
 def test_emps_searched_freely_gives_its_published_damping_and_friction(emps):
     found = coefficients(emps)
     assert found["viscous-damping"] == pytest.approx(203.0, rel=0.03)
