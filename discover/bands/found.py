@@ -86,8 +86,6 @@ class Found:
     """What the device has besides its structure."""
     last: Step | None
     """What might have joined and did not; None where nothing but noise was left."""
-    before: Composite | None = None
-    """The model to which the last of these joined, or from which one was taken."""
     rivals: tuple[Found, ...] = ()
     """Where other ways ended, with other terms joined, where more than noise is left."""
 
@@ -104,12 +102,10 @@ class Found:
     @property
     def model(self) -> Composite:
         """Each band's best variant, friction, and what has joined."""
-        friction = [FittedTerm(self.device.friction.id, 1.0, {})]
-        joined = [t for j in self.joined for t in j.terms]
-        return composite_of(
-            self.banded, self.variants, friction if self.device.with_friction else [], joined,
-            self.before,
-        )
+        shared = [t for j in self.joined for t in j.terms]
+        if self.device.with_friction:
+            shared.append(FittedTerm(self.device.friction.id, 1.0, {}))
+        return composite_of(self.banded, self.variants, shared)
 
     @property
     def quiet(self) -> bool:
