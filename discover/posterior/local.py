@@ -17,7 +17,7 @@ from models.checks import Array, Indices
 from models.terms import Scales
 
 _ITERATIONS = 12  # steps of the climb in shape parameters at most
-_ENOUGH = 0.01  # nats, of a step's gain, or of what its linear form promises
+_ENOUGH = 0.001  # nats, of a step's gain, or of what its linear form promises
 _NOTHING = 1e-200  # of a coefficient, in its unit: bounds are kept to 1e-300
 _SHORTENED = 6  # times at most that a step which gains nothing is tried
 _SHORTER = 0.4  # of its length, each time
