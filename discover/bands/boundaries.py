@@ -49,8 +49,8 @@ def _boundary(search: BandSearch, banded: Banded, lower: int, power: float) -> B
     shares, kept = refined(whole, lower, parts)
     few = search.only(banded.variants)
     start = np.tile(np.arange(banded.bands), (len(shares), 1))
-    values_of = power * few.many(banded.place, banded.scale, shares, start).value
-    chances = np.exp(values_of - logsumexp(values_of))
+    found = power * few.many(banded.place, banded.scale, shares, start).value
+    chances = np.exp(found - logsumexp(found))
     ends = ends[kept]
     bracket = banded.brackets[lower]
     total = np.cumsum(chances)

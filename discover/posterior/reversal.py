@@ -118,7 +118,7 @@ def with_few_curves(
     best = fitted(space, assessor.evaluator, begun, sizes, None)
     parts = [best.model.terms[i].fitted for i in given]
     sliding = [i for i, t in zip(given, parts, strict=True) if t.id == name]
-    surely = [_deviation(assessed, best, own) for own in (sliding, set(given) - set(sliding))]
+    surely = _deviations(assessed, best, sliding, set(given) - set(sliding))
     least = _NOTHING * sum(t.coefficient for t in parts)
     kept = tuple(t for t in parts if t.coefficient > least) or (parts[0],)
     own = FittedTerm(name, replace(found, terms=kept).sliding, whole.fitted.shape)
@@ -126,21 +126,27 @@ def with_few_curves(
         replace(whole, fitted=own) if i == at else p
         for i, p in enumerate(best.model.terms[: len(terms)])
     ]
-    found = replace(found, terms=kept, beside=(surely[0], surely[1]))
-    return found, Composite(tuple(aligned))
+    return replace(found, terms=kept, beside=surely), Composite(tuple(aligned))
 
 
-def _deviation(assessed: Assessed, local: Local, places: Collection[int]) -> float:
-    """Return the standard deviation of a sum of terms beside what the model leaves.
+def _deviations(
+    assessed: Assessed, local: Local, sliding: Collection[int], falling: Collection[int]
+) -> tuple[float, float]:
+    """Return the standard deviations of two sums of terms, by places, beside what a model leaves.
 
-    How far the sum is from what is most probable there widens it.
+    How far a sum is from what is most probable there widens it.
     """
     space = assessed.space
     sizes = assessed.place.sizes(space.own_unit)
     solved = judged(local, local.beside(space, None), sizes).solved
-    own = np.array([n.shape is None and n.term in places for n in local.numbers])
-    away = float(np.sum((solved.mean - local.values)[own]))
-    return float(np.sqrt(solved.covariance[np.ix_(own, own)].sum() + away**2))
+    away = solved.mean - local.values
+    whole = solved.covariance + np.outer(away, away)
+
+    def deviation(places: Collection[int]) -> float:
+        own = [n.shape is None and n.term in places for n in local.numbers]
+        return float(np.sqrt(max(whole[np.ix_(own, own)].sum(), 0.0)))
+
+    return deviation(sliding), deviation(falling)
 
 
 def reversal_of(

@@ -7,6 +7,7 @@ import pytest
 
 from discover.bands.boundaries import boundaries_of
 from discover.bands.extras import searched_with
+from discover.bands.found import Found
 from discover.study import StudyOptions
 from discover.study.prepare import prepare
 from tests.discover.exact import campaign
@@ -36,17 +37,21 @@ def test_the_interval_holds_the_place_where_the_law_changes(missing):
     assert low <= end.bracket[0] < CHANGES < end.bracket[1] <= high
 
 
-def test_beside_a_remainder_the_interval_is_that_of_the_likelihood_at_a_power():
+def test_beside_a_remainder_the_interval_is_that_of_the_likelihood_at_a_power(monkeypatch):
     way = divided(0.25)
     assert not way.quiet
     assert 0.0 < way.power < 1.0
-    (end,) = boundaries_of(way)
-    sure = replace(way)
-    sure.__dict__["power"] = 1.0
-    (surer,) = boundaries_of(sure)
-    assert end.interval[0] <= surer.interval[0]
-    assert end.interval[1] >= surer.interval[1]
-    weak = replace(way)
-    weak.__dict__["power"] = 1e-9
-    (unsure,) = boundaries_of(weak)
-    assert unsure.interval[1] / unsure.interval[0] > 2.0 * surer.interval[1] / surer.interval[0]
+
+    def interval(power):
+        monkeypatch.setattr(Found, "power", power)
+        ((low, high),) = (end.interval for end in boundaries_of(replace(way)))
+        return low, high
+
+    (own, sure, unsure) = (interval(p) for p in (way.power, 1.0, 1e-9))
+    assert unsure[0] <= own[0] <= sure[0]
+    assert unsure[1] >= own[1] >= sure[1]
+    assert unsure[1] / unsure[0] > 2.0 * sure[1] / sure[0]
+
+
+def test_where_but_noise_is_left_the_likelihood_is_whole():
+    assert divided(0.0).power == 1.0
