@@ -2,33 +2,91 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import chain
 
-from discover.bands.search import Banded
+import numpy as np
+
+from discover.bands.search import Banded, BandSearch
+from discover.posterior.evidence import solved
+from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Placed
-from discover.posterior.structures import Variant
+from discover.posterior.space import Part
+from models.checks import Array
 from models.constitutive import FittedTerm
+
+_BEGUN = 1e-9
+"""Of a coefficient that its sign would hold at zero: a fit can still raise it."""
 
 
 def composite_of(
-    banded: Banded,
-    variants: Sequence[Variant],
-    shared: Sequence[FittedTerm],
+    search: BandSearch, banded: Banded, joined: Sequence[FittedTerm]
 ) -> Composite:
     """Return each band's best variant in its units, and what all bands share.
 
+    A fit starts where the search found it: behind a joint that yields, coefficients far from that
+    would move it otherwise.
+
     Parameters
     ----------
+    search : BandSearch
+        That found the division.
     banded : Banded
         The division.
-    variants : sequence of Variant
-        That its places stand for.
-    shared : sequence of FittedTerm
-        Friction, and what else the device has.
+    joined : sequence of FittedTerm
+        What the device has besides.
     """
-    placed = []
+    placed: list[tuple[Part, tuple[float, ...] | None]] = []
     for band, place in enumerate(banded.variants):
         share = None if banded.bands == 1 else tuple(float(s) for s in banded.shares[band])
-        for part in variants[place].parts:
-            placed += [Placed(t, share) for t in part.terms]
-    return Composite((*placed, *(Placed(t) for t in shared)))
+        placed += [(part, share) for part in search.variants[place].parts]
+    own, friction = len(placed), search.friction
+    if friction is not None:
+        placed.append((friction, None))
+    found = _coefficients(search, banded, placed)
+    terms = [
+        [Placed(_begun(t, value), share) for t, value in zip(part.terms, values, strict=False)]
+        for (part, share), values in zip(placed, found, strict=True)
+    ]
+    shared = [t[0] for t in terms[own:]]
+    return Composite((*chain(*terms[:own]), *map(Placed, joined), *shared))
+
+
+def as_it_was(model: Composite, before: Composite) -> Composite | None:
+    """Return a model with the values that the same terms had in one fitted before.
+
+    None where it has other terms. Of terms alike, as those of several bands, the order counts.
+    """
+    known: dict[str, list[FittedTerm]] = {}
+    for placed in before.terms:
+        known.setdefault(placed.fitted.id, []).append(placed.fitted)
+    own = Counter(p.fitted.id for p in model.terms)
+    if own != {i: len(terms) for i, terms in known.items()}:
+        return None
+    values = {i: iter(terms) for i, terms in known.items()}
+    return Composite(tuple(replace(p, fitted=next(values[p.fitted.id])) for p in model.terms))
+
+
+def _coefficients(
+    search: BandSearch, banded: Banded, placed: Sequence[tuple[Part, tuple[float, ...] | None]]
+) -> list[Array]:
+    """Return the most probable coefficients of each part's columns, signs aside."""
+    space, ones = search.space, np.ones(len(search.space.sheet.units))
+    parts = [*placed, *((part, None) for part in search.extras)]
+    columns = [
+        space.columns[:, part.columns] * (ones if share is None else np.array(share))[:, None, None]
+        for part, share in parts
+    ]
+    spread = np.concatenate([part.scales[0] * part.spread for part, _ in parts])
+    whole = np.concatenate([*columns, space.sheet.target[:, None]], axis=1)
+    gram = Comparison(space, whole, None).at(banded.place.sizes(space.own_unit)).gram[0]
+    mean = solved(gram[:-1, :-1], gram[:-1, -1], spread, np.zeros(spread.size), 0.0).mean
+    ends = np.cumsum([part.columns.size for part, _ in parts])
+    return np.split(mean, ends[:-1])[: len(placed)]
+
+
+def _begun(term: FittedTerm, value: float) -> FittedTerm:
+    low, high = term.term.coefficient_bounds(term.shape)
+    return FittedTerm(term.id, float(np.clip(value, low, high)) or _BEGUN, term.shape)

@@ -46,7 +46,8 @@ def searched_with(
     )
     bands = [held(device, search, b) for b in searched(search, place, bands=device.bands)]
     space.forget()
-    way = Found(device, bands[-1], tuple(bands), search, tuple(joined), None)
+    before = None if behind is None else behind.model
+    way = Found(device, bands[-1], tuple(bands), search, tuple(joined), None, before)
     return _chosen(way if device.bands is None else replace(way, fewer=way.fewer[-1:]))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from discover.bands.composite import composite_of
+from discover.bands.composite import as_it_was, composite_of
 from discover.bands.search import Banded, BandSearch
 from discover.bands.variants import Grids
 from discover.posterior.assess import Assessed, Assessor
@@ -86,6 +86,8 @@ class Found:
     """What the device has besides its structure."""
     last: Step | None
     """What might have joined and did not; None where nothing but noise was left."""
+    before: Composite | None = None
+    """A model fitted beside what has joined, from which the bands were searched."""
     rivals: tuple[Found, ...] = ()
     """Where other ways ended, with other terms joined, where more than noise is left."""
 
@@ -102,10 +104,7 @@ class Found:
     @property
     def model(self) -> Composite:
         """Each band's best variant, friction, and what has joined."""
-        shared = [t for j in self.joined for t in j.terms]
-        if self.device.with_friction:
-            shared.append(FittedTerm(self.device.friction.id, 1.0, {}))
-        return composite_of(self.banded, self.variants, shared)
+        return composite_of(self.search, self.banded, [t for j in self.joined for t in j.terms])
 
     @property
     def quiet(self) -> bool:
@@ -123,8 +122,15 @@ class Found:
 
     @cached_property
     def assessed(self) -> Assessed:
-        """The model, fitted."""
-        return self.device.assessor.assess(self.model, self.banded.place)
+        """The model, fitted from where the search found it, or as its terms were before.
+
+        From the first, one shape of what changes the motion may not be reached from another.
+        """
+        model, assessor = self.model, self.device.assessor
+        before = None if self.before is None else as_it_was(model, self.before)
+        if before is not None:
+            model = assessor.nearest([model, before], self.banded.place)
+        return assessor.assess(model, self.banded.place)
 
     def with_values(self, by_variant: Array) -> Found:
         """Return the same with other log evidence (B, V) of each band's structures."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -19,6 +19,7 @@ from discover.posterior.space import Part, Space, departures
 from discover.rows.columns import Behind
 
 _ROUNDS = 3  # of fitting and climbing
+_FEW_STEPS = 3  # of a fit from each of several places, of which the best goes on
 _SMALL = -10
 """Power of two, of the force: what is left below it is nothing that a model need explain."""
 _ORDINARY = -3
@@ -72,7 +73,7 @@ class Assessed:
         What no term explains is not known in other records. Numbers that lean on a remainder are
         right only beside it; these are the ones by which the terms alone come closest.
         """
-        if self.place.remainder <= _SMALL or not self.local.numbers or self.value == -np.inf:
+        if _is_small(self.place) or not self.local.numbers or self.value == -np.inf:
             return self
         local, place, space = self.local, self.place, self.space
         visited: dict[Place, float] = {}
@@ -119,6 +120,11 @@ class Assessor:
         if space is not self.space:
             space.forget()
         return local.model, value
+
+    def nearest(self, models: Sequence[Composite], place: Place) -> Composite:
+        """Return the model that a few steps of a fit make most probable, after these steps."""
+        begun = [self.glance(m, place, iterations=_FEW_STEPS) for m in models]
+        return max(begun, key=lambda b: b[1])[0]
 
     def assess(self, model: Composite, start: Place, *, refit: bool = True) -> Assessed:
         """Return a model fitted and assessed, from sizes to start from."""
@@ -190,12 +196,14 @@ def _at(
     return visited[place]
 
 
+def _is_small(place: Place) -> bool:
+    """Tell whether at some sizes no more is left than a model need not explain."""
+    return place.remainder <= _SMALL and place.loudest <= _SMALL and place.own <= _ORDINARY
+
+
 def is_quiet(visited: Mapping[Place, float]) -> bool:
     """Tell whether it may be that no more than noise is left, from log evidence by sizes, nats."""
-    small = [
-        v for p, v in visited.items()
-        if p.remainder <= _SMALL and p.loudest <= _SMALL and p.own <= _ORDINARY
-    ]
+    small = [v for p, v in visited.items() if _is_small(p)]
     if not small:
         return False
     return bool(logsumexp(small) - logsumexp(list(visited.values())) > np.log(_POSSIBLE))
