@@ -20,7 +20,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
     """
     force = force_of(motion)
     device = device_of(force, motion, force_of)
-    stiffness = float(device[0]) * shape["contact"] ** 2
+    stiffness = device.mass * shape["contact"] ** 2
     if stiffness <= 0.0:
         return force
     gap = shape["gap"]

@@ -27,7 +27,7 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         cut = {"limit": limit, "softness": shape["softness"], "side": side}
         return np.asarray(force - coefficient * excess(force, cut))
     device = device_of(force, motion, force_of)
-    stiffness = float(device[0]) * shape["contact"] ** 2
+    stiffness = device.mass * shape["contact"] ** 2
     if stiffness <= 0.0:
         return force
     lower, upper = (-np.inf, limit) if side > 0.0 else (-limit, np.inf)

@@ -11,6 +11,7 @@ import numpy as np
 from models.checks import Array
 from models.compiled import compiled
 from models.motion import Motion
+from models.terms.joint_device import JointDevice
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
@@ -61,7 +62,7 @@ class Joint:
     """True where dry friction is beside the joint and not behind it."""
 
 
-def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> Array:
+def through_joint(force: Array, motion: Motion, joint: Joint, device: JointDevice) -> Array:
     """Return the force (N,) with a joint before a device whose own force is `force`.
 
     It is not finite where the device's own is too great to have a square.
@@ -74,14 +75,13 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
         Of the driven end.
     joint : Joint
         What it is driven through.
-    device : ndarray, shape (6,)
+    device : JointDevice
         What `device_of` makes of the force.
     """
-    mass, viscous, quadratic, dry, reversal, spring = device
+    mass, viscous, quadratic, dry, reversal, spring, curve, top = device
     v, x = motion.velocity, motion.displacement - motion.displacement.mean()
     behind = 0.0 if joint.fluid_only else dry
-    rigid = mass * motion.acceleration + viscous * v + quadratic * v * np.abs(v)
-    rigid = rigid + behind * np.tanh(v / reversal) + spring * x
+    rigid = device.force(motion, dry=not joint.fluid_only)
     if not np.any(rigid):
         return force
     if not np.isfinite(rigid @ rigid):
@@ -111,7 +111,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: Array) -> 
         x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, spring, stiffness,
         damping, 0.5 * joint.gap, joint.soft, joint.lower, joint.upper, int(joint.refilled),
         joint.lag, joint.valve, joint.half_load, joint.load_share, joint.load_side, passes, start,
-        bent,
+        bent, curve, top,
     )
     return np.asarray(force + carried - rigid)
 
@@ -129,6 +129,7 @@ def _step(
     dry: float, slow: float, spring: float, stiffness: float, damping: float, half: float,
     soft: float, lower: float, upper: float, refilled: int, lag: float, valve: float,
     half_load: float, taken: float, load_side: float, passes: int, start: int, bent: float,
+    curve: Array, top: float,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps.
 
@@ -161,6 +162,9 @@ def _step(
                 depth = end - position - slipped
                 deepest = max(deepest, abs(depth))
                 now = speed + 0.5 * h * rate  # half a step on: there the place is known
+                curved = steeper = 0.0
+                if curve.size > 0:
+                    curved, steeper = _on_curve(curve, top, now)
                 force = 0.0
                 if half_load > 0.0 and (load_side == 0.0 or load_side * depth > 0.0):
                     # depth stiffness = force (1 - taken + taken half_load / (half_load + force))
@@ -183,6 +187,7 @@ def _step(
                     force, held = side * push, held * damping
                     if held > 0.0:
                         resisted = (viscous + quadratic * abs(now)) * now + spring * position
+                        resisted += curved
                         ahead = (force + held * (now - speed) - resisted) / (mass + 0.5 * h * held)
                         force += held * (now - speed - 0.5 * h * ahead)
                 else:
@@ -210,7 +215,11 @@ def _step(
                 total += force
                 begun = speed
                 resisted = (viscous + quadratic * abs(now)) * now + spring * position
-                speed += h * (force - resisted) / mass
+                if steeper > 0.0:  # implicitly: however steep, it is not passed by
+                    resisted += curved + steeper * (speed - now)
+                    speed += h * (force - resisted) / (mass + 0.5 * h * steeper)
+                else:
+                    speed += h * (force - resisted - curved) / mass
                 free = speed  # friction implicitly: it never overshoots
                 if abs(free) > _WIDE * slow + brake:
                     speed -= brake if free > 0.0 else -brake
@@ -266,6 +275,23 @@ def _pushed(
     most = middle + stiffness * reach
     share = most / (2.0 * stiffness * reach)
     return share * 0.5 * most, share
+
+
+@compiled(cache=True, inline="always")
+def _on_curve(curve: Array, top: float, speed: float) -> tuple[float, float]:
+    """Return the force and the slope at a speed of a curve given at `speed_curve`'s nodes.
+
+    Beyond the last ones, at `top`, it stays as it is.
+    """
+    middle, far = curve.size // 2, abs(speed) / top
+    if far >= 1.0:
+        return curve[2 * middle] if speed > 0.0 else curve[0], 0.0
+    k = int(np.sqrt(far) * middle)
+    low, high = top * (k / middle) ** 2, top * ((k + 1) / middle) ** 2
+    step = 1 if speed > 0.0 else -1
+    near = curve[middle + step * k]
+    rise = (curve[middle + step * (k + 1)] - near) / (high - low)
+    return near + rise * (abs(speed) - low), step * rise
 
 
 @compiled(cache=True, inline="always")

@@ -1,7 +1,11 @@
-"""The device behind a joint: a spring, and the mass and resistances that fit its other force."""
+"""The device behind a joint: a spring, and the mass and resistances that fit its other force.
+
+What these leave of it and is a curve of speed, as that of a valve or of thinning oil, is behind
+the joint too. The rest, as a memory's, moves with the driven end.
+"""
 
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import NamedTuple, Self
 from weakref import ReferenceType, ref
 
 import numpy as np
@@ -10,14 +14,53 @@ from scipy.optimize import nnls
 
 from models.checks import Array
 from models.motion import Motion
+from models.terms.speed_curve import SpeedCurves, nodes_of
 from models.terms.term import ForceOf, unchanged
 
 _RIDGE = 1e-12
 _LEAST_DRY = 1e-6  # of the force's root mean square
+_LEAST_CURVE = 1e-5  # likewise, of what else is a curve of speed
 _SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
 _REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
+_BEYOND = 2.0  # ranges of reversal, where dry friction has reversed
 _MOST_KNOWN = 32  # devices of one motion that are kept
 _SEEN = 8192  # samples of a motion at least, by which a device is told where there are more
+
+
+class JointDevice(NamedTuple):
+    """A device as a joint drives it."""
+
+    mass: float
+    """kg."""
+    viscous: float
+    """Resistance, N s/m."""
+    quadratic: float
+    """Resistance, N s^2/m^2."""
+    dry: float
+    """Resistance, N."""
+    reversal: float
+    """m/s, range of speed over which the dry one reverses."""
+    spring: float
+    """N/m."""
+    curve: Array
+    """N at the nodes of speed (`speed_curve`) up to `top`: what else depends on speed; empty where
+    nothing does."""
+    top: float
+    """m/s."""
+
+    def force(self, motion: Motion, *, dry: bool = True) -> Array:
+        """Return the force (N,) in a motion, N; with or without the dry resistance."""
+        v, x = motion.velocity, motion.displacement
+        found = self.mass * motion.acceleration + self.viscous * v
+        found = found + self.quadratic * v * np.abs(v) + self.spring * (x - x.mean())
+        if dry:
+            found = found + self.dry * np.tanh(v / self.reversal)
+        if self.curve.size:
+            found = found + np.interp(v, nodes_of(self.top), self.curve)
+        return np.asarray(found)
+
+
+_NONE = np.zeros(0)
 
 
 @dataclass(frozen=True)
@@ -46,6 +89,10 @@ class _Resistances:
     def _picked(frictions: int) -> NDArray[np.intp]:
         return np.array([[0, 1, 2, 3 + k] for k in range(frictions)])
 
+    def columns_with(self, velocity: Array, reversal: float) -> Array:
+        """Return the columns (4, N) of a device whose friction reverses over a range of speed."""
+        return np.concatenate([self.columns[:3], np.tanh(velocity / reversal)[None]])
+
     def fitted(self, force: Array) -> tuple[Array, Array]:
         """Return coefficients (T, 4), none negative, and misfits (T,) of a force (N,) with each."""
         picked = self._picked(len(self.gram))
@@ -64,12 +111,14 @@ class _Resistances:
 class _Known:
     """What was found out on a motion, which keeps it: one device is tried behind many joints."""
 
-    devices: dict[tuple[int, bool], tuple[ReferenceType[Array], Array]] = field(
+    devices: dict[tuple[int, bool], tuple[ReferenceType[Array], JointDevice]] = field(
         default_factory=dict
     )
     """By the force's identity, and whether it came without a model."""
     resistances: _Resistances | None = None
     """None where they were not asked for."""
+    curves: SpeedCurves | None = None
+    """Likewise."""
     still: Motion | None = None
     """The same speeds without displacement; None likewise, or where the motion is long."""
 
@@ -80,12 +129,11 @@ class _Known:
         return known
 
 
-def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> Array:
-    """Return the device that fits a force best: its mass and resistances, and where they reverse.
+def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> JointDevice:
+    """Return the device that fits a force best.
 
-    Mass (kg), viscous (N s/m), quadratic (N s^2/m^2) and dry (N) resistance, the range of speed
-    (m/s) over which the dry one reverses, and the stiffness (N/m) of a spring beside them. None
-    but the stiffness is negative; all are zero for a force that is not finite.
+    None of its numbers but the spring's stiffness is negative; all are zero for a force that is
+    not finite.
 
     Parameters
     ----------
@@ -103,7 +151,7 @@ def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> 
         return known[1]
     stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of)
     place = motion.displacement - motion.displacement.mean()
-    found = np.append(_device(force - stiffness * place, motion), stiffness)
+    found = _device(force - stiffness * place, motion)._replace(spring=stiffness)
     if len(devices) >= _MOST_KNOWN:
         devices.pop(list(devices)[0], None)  # threads may be here too
     devices[key] = ref(force), found
@@ -133,28 +181,49 @@ def _stiffness(force: Array, motion: Motion, force_of: ForceOf) -> float:
     return slope if np.isfinite(slope) else 0.0
 
 
-def _device(force: Array, motion: Motion) -> Array:
-    v = motion.velocity
-    top = float(np.abs(v).max())
+def _device(force: Array, motion: Motion) -> JointDevice:
+    """Return the device without a spring."""
+    v = motion.velocity[_seen(motion)]
+    top = float(np.abs(motion.velocity).max())
     if not np.all(np.isfinite(force)) or top == 0.0:
-        return np.zeros(5)
+        return JointDevice(0.0, 0.0, 0.0, 0.0, 1.0, 0.0, _NONE, 1.0)
     sought = force[_seen(motion)]
     sought = sought - sought.mean()
     resistances = _resistances_of(motion)
     found, left = resistances.fitted(sought)
     best = int(left.argmin())
     reversal = _REVERSALS[best] * top
-    if found[best, 3] < _LEAST_DRY * float(np.sqrt(np.mean(sought**2))):
-        return np.append(found[0, :3], (0.0, _REVERSALS[0] * top))
-    if 0 < best < left.size - 1:
+    size = float(np.sqrt(np.mean(sought**2)))
+    if found[best, 3] < _LEAST_DRY * size:
+        best, reversal = 0, _REVERSALS[0] * top
+        found[0, 3] = 0.0
+    elif 0 < best < left.size - 1:
         before, at, after = left[best - 1 : best + 2]
         shift = 0.5 * (before - after) / max(before - 2.0 * at + after, before - at, 1e-300)
         reversal *= (_REVERSALS[1] / _REVERSALS[0]) ** shift
-        closer = _Resistances.of(
-            resistances.columns[:3], np.tanh(v[_seen(motion)] / reversal)[None]
-        )
+        closer = _Resistances.of(resistances.columns[:3], np.tanh(v / reversal)[None])
         found, best = closer.fitted(sought)[0], 0
-    return np.append(found[best], reversal)
+    mass, viscous, quadratic, dry = (float(c) for c in found[best])
+    device = JointDevice(mass, viscous, quadratic, dry, float(reversal), 0.0, _NONE, top)
+    sought -= found[best] @ resistances.columns_with(v, reversal)
+    curve = _curves_of(motion).fitted(sought)
+    return _with_curve(device, curve) if np.abs(curve).max() > _LEAST_CURVE * size else device
+
+
+def _with_curve(device: JointDevice, curve: Array) -> JointDevice:
+    """Return a device with what else is a curve of speed.
+
+    Its dry resistance is what there is just beyond the range over which it reverses: beside a
+    greater one the curve would fall steeply there, which can't be stepped.
+    """
+    nodes, middle = nodes_of(device.top), curve.size // 2
+    turned = np.tanh(nodes / device.reversal)
+    whole = curve + device.dry * turned
+    beyond = int(np.searchsorted(nodes[middle:], _BEYOND * device.reversal))
+    beyond = min(beyond, middle)
+    there = min(whole[middle + beyond], -whole[middle - beyond]) / turned[middle + beyond]
+    dry = max(float(there), 0.0)
+    return device._replace(dry=dry, curve=np.asarray(whole - dry * turned))
 
 
 def _resistances_of(motion: Motion) -> _Resistances:
@@ -167,6 +236,14 @@ def _resistances_of(motion: Motion) -> _Resistances:
     plain = np.stack([a, v, v * np.abs(v)])
     known.resistances = _Resistances.of(plain, np.tanh(v / (_REVERSALS[:, None] * top)))
     return known.resistances
+
+
+def _curves_of(motion: Motion) -> SpeedCurves:
+    """Return what fits curves of speed on a motion, made once."""
+    known = _Known.of(motion)
+    if known.curves is None:
+        known.curves = SpeedCurves.of(motion.velocity[_seen(motion)])
+    return known.curves
 
 
 def _seen(motion: Motion) -> slice:
