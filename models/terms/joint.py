@@ -12,10 +12,11 @@ from models.checks import Array
 from models.compiled import compiled
 from models.motion import Motion
 from models.terms.joint_device import JointDevice
+from models.terms.spring_steps import carried_by_spring
+from models.terms.stepping import SETTLED, begin, on_curve, with_friction
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
-_SETTLED = 5e-4
 _LEAD = 4  # of a cycle this part is stepped ahead: most joints forget within it how they began
 _SHORT = 8192  # samples of one cycle; longer periods of many cycles settle within one
 _LEAST_INNER, _MOST_INNER = 4, 60
@@ -25,8 +26,6 @@ _SLOWED = 0.5  # of its speed, by which resistance slows a mass in an inner step
 _FORGETS = 7.0  # times e that what a joint began with decays over a cycle at least
 _LEAST_LOSS = 0.005  # that is enough for it, where it moves of its own many times a cycle
 _FAR = 15.0  # widths from a soft flank, where it is met or not
-_NEWTON = 2  # steps for the speed after friction
-_WIDE = 3.0  # ranges of reversal, beyond which friction is whole
 
 
 @dataclass(frozen=True)
@@ -86,16 +85,17 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: JointDevic
         return force
     if not np.isfinite(rigid @ rigid):
         return np.full_like(force, np.nan)  # beyond all numbers: there is no such device
+    if joint.gap == 0.0 and joint.lower == -np.inf and joint.upper == np.inf:
+        driven = device._replace(dry=behind)
+        load = joint.half_load, joint.load_share, joint.load_side
+        carried = carried_by_spring(motion, driven, rigid, joint.stiffness, joint.loss, load)
+        return np.asarray(force + carried - rigid)
     most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
     resistance = viscous + quadratic * float(np.abs(v).max())
     carried_along = _ADDED_MASS * _size(rigid) / _size(motion.acceleration)
     mass = max(mass, carried_along, resistance * motion.step / (_SLOWED * most))
     natural = float(np.sqrt((joint.stiffness + max(spring, 0.0)) / mass))
     fastest = max(natural, resistance / mass)
-    if joint.half_load > 0.0:
-        squeezed = 1.0 + float(np.abs(rigid).max()) / joint.half_load
-        taken = max(joint.load_share, 0.0)
-        fastest /= np.sqrt(1.0 - taken + taken / squeezed**2)
     inner = int(np.clip(np.ceil(fastest * motion.step / _STEP), 1, most))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
     loss = joint.loss
@@ -110,8 +110,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: JointDevic
     carried = _step(
         x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, spring, stiffness,
         damping, 0.5 * joint.gap, joint.soft, joint.lower, joint.upper, int(joint.refilled),
-        joint.lag, joint.valve, joint.half_load, joint.load_share, joint.load_side, passes, start,
-        bent, curve, top,
+        joint.lag, joint.valve, passes, start, bent, curve, top,
     )
     return np.asarray(force + carried - rigid)
 
@@ -127,9 +126,8 @@ def _size(values: Array) -> float:
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, spring: float, stiffness: float, damping: float, half: float,
-    soft: float, lower: float, upper: float, refilled: int, lag: float, valve: float,
-    half_load: float, taken: float, load_side: float, passes: int, start: int, bent: float,
-    curve: Array, top: float,
+    soft: float, lower: float, upper: float, refilled: int, lag: float, valve: float, passes: int,
+    start: int, bent: float, curve: Array, top: float,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps.
 
@@ -164,18 +162,9 @@ def _step(
                 now = speed + 0.5 * h * rate  # half a step on: there the place is known
                 curved = steeper = 0.0
                 if curve.size > 0:
-                    curved, steeper = _on_curve(curve, top, now)
+                    curved, steeper = on_curve(curve, top, now)
                 force = 0.0
-                if half_load > 0.0 and (load_side == 0.0 or load_side * depth > 0.0):
-                    # depth stiffness = force (1 - taken + taken half_load / (half_load + force))
-                    stiff = stiffness / (1.0 - taken)
-                    rest = abs(depth) * stiff - half_load / (1.0 - taken)
-                    force = abs(depth) * stiff * half_load
-                    force = 0.5 * (rest + np.sqrt(rest * rest + 4.0 * force))
-                    softer = 1.0 - taken + taken * (half_load / (half_load + force)) ** 2
-                    force = force if depth > 0.0 else -force
-                    force += damping / np.sqrt(softer) * (pace - now)
-                elif soft > 0.0:
+                if soft > 0.0:
                     pressed, bearing = _flanks(abs(depth) / soft, half / soft)
                     force = stiffness * soft * (pressed if depth > 0.0 else -pressed)
                     force += damping * bearing * (pace - now)
@@ -220,18 +209,7 @@ def _step(
                     speed += h * (force - resisted) / (mass + 0.5 * h * steeper)
                 else:
                     speed += h * (force - resisted - curved) / mass
-                free = speed  # friction implicitly: it never overshoots
-                if abs(free) > _WIDE * slow + brake:
-                    speed -= brake if free > 0.0 else -brake
-                elif brake > 0.0:
-                    if abs(free) > slow + brake:
-                        speed -= brake if free > 0.0 else -brake
-                    else:
-                        speed /= 1.0 + brake / slow
-                    for _ in range(_NEWTON):
-                        turned = _tanh(speed / slow)
-                        slope = 1.0 + brake / slow * (1.0 - turned * turned)
-                        speed -= (speed + brake * turned - free) / slope
+                speed = with_friction(speed, brake, slow)
                 rate = (speed - begun) / h
                 position += h * speed
             result[i] = total / inner
@@ -239,11 +217,11 @@ def _step(
             start = 0
             continue
         moved = abs(position - x[0] + slipped - was)
-        steady = moved < _SETTLED * deepest and abs(speed - was_speed) < _SETTLED * pace_limit
+        steady = moved < SETTLED * deepest and abs(speed - was_speed) < SETTLED * pace_limit
         if turn > 0 and steady:
             break
         if refilled == 0:
-            known = _begin(before, known, was, was_speed, position - x[0], speed)
+            known = begin(before, known, was, was_speed, position - x[0], speed)
             if known == 3:
                 position, speed = before[0, 0] + x[0], before[0, 1]
                 known = 0
@@ -278,23 +256,6 @@ def _pushed(
 
 
 @compiled(cache=True, inline="always")
-def _on_curve(curve: Array, top: float, speed: float) -> tuple[float, float]:
-    """Return the force and the slope at a speed of a curve given at `speed_curve`'s nodes.
-
-    Beyond the last ones, at `top`, it stays as it is.
-    """
-    middle, far = curve.size // 2, abs(speed) / top
-    if far >= 1.0:
-        return curve[2 * middle] if speed > 0.0 else curve[0], 0.0
-    k = int(np.sqrt(far) * middle)
-    low, high = top * (k / middle) ** 2, top * ((k + 1) / middle) ** 2
-    step = 1 if speed > 0.0 else -1
-    near = curve[middle + step * k]
-    rise = (curve[middle + step * (k + 1)] - near) / (high - low)
-    return near + rise * (abs(speed) - low), step * rise
-
-
-@compiled(cache=True, inline="always")
 def _flanks(depth: float, half: float) -> tuple[float, float]:
     """Return how far both flanks are pressed in, and the slope of that; in widths, depth from 0.
 
@@ -311,37 +272,3 @@ def _flanks(depth: float, half: float) -> tuple[float, float]:
     other = np.exp(-depth - half)
     pressed = np.log((1.0 + grown) / (1.0 + other))
     return pressed, grown / (1.0 + grown) + other / (1.0 + other)
-
-
-@compiled(cache=True, inline="always")
-def _tanh(value: float) -> float:
-    """Return the hyperbolic tangent to 2e-6 up to `_WIDE`, from its continued fraction."""
-    s = value * value
-    above = 135135.0 + s * (17325.0 + s * (378.0 + s))
-    below = 135135.0 + s * (62370.0 + s * (3150.0 + s * 28.0))
-    return min(max(value * above / below, -1.0), 1.0)
-
-
-@compiled(cache=True, error_model="numpy")
-def _begin(
-    before: Array, known: int, place: float, speed: float, place_now: float, speed_now: float
-) -> int:
-    """Return how many cycles' beginnings are in `before`; after three, the steady one is first.
-
-    From cycle to cycle a state nearly follows a linear map, whose fixed point three steps of it
-    give by Cayley and Hamilton. Where the map does not contract the last two are kept.
-    """
-    before[known] = place, speed
-    if known < 2:
-        return known + 1
-    a, b = before[1] - before[0], before[2] - before[1]
-    c = np.array([place_now, speed_now]) - before[2]
-    area = a[0] * b[1] - a[1] * b[0]
-    if area != 0.0:  # the map takes a to b and b to c
-        trace = (a[0] * c[1] - a[1] * c[0]) / area
-        product = (b[0] * c[1] - b[1] * c[0]) / area
-        if abs(product) < 1.0 and abs(trace) < 1.0 + product:
-            before[0] = before[2] + (c - product * b) / (1.0 - trace + product)
-            return 3
-    before[0], before[1] = before[1].copy(), before[2].copy()
-    return 2

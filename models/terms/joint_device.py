@@ -10,7 +10,6 @@ from weakref import ReferenceType, ref
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from models.checks import Array
 from models.motion import Motion
@@ -18,10 +17,9 @@ from models.terms.speed_curve import SpeedCurves, nodes_of
 from models.terms.term import ForceOf, unchanged
 
 _RIDGE = 1e-12
-_LEAST_DRY = 1e-6  # of the force's root mean square
-_LEAST_CURVE = 1e-5  # likewise, of what else is a curve of speed
+_LEAST_CURVE = 1e-5  # of the force's root mean square, of what else is a curve of speed
 _SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
-_REVERSALS = _SLOW * 2.5 ** np.arange(6.0)  # ranges of reversal tried, of the greatest speed
+_REVERSALS = _SLOW * 1.6 ** np.arange(11.0)  # ranges of reversal tried, of the greatest speed
 _BEYOND = 2.0  # ranges of reversal, where dry friction has reversed
 _MOST_KNOWN = 32  # devices of one motion that are kept
 _SEEN = 8192  # samples of a motion at least, by which a device is told where there are more
@@ -71,8 +69,9 @@ class _Resistances:
     """(3 + T, N) those of acceleration, velocity and its square, then of the frictions."""
     scale: Array
     """(3 + T,) their sizes."""
-    gram: Array
-    """(T, 4, 4) products of the first three and each friction, over their sizes."""
+    solving: Array
+    """(T, 16, 4, 4) what makes coefficients of some of the first three and a friction from their
+    products with a force; each of the 16 sets of them, zeros for the others."""
 
     @classmethod
     def of(cls, plain: Array, dry: Array) -> Self:
@@ -80,31 +79,32 @@ class _Resistances:
         columns = np.concatenate([plain, dry])
         scale = np.sqrt(np.einsum("ij,ij->i", columns, columns))
         scale = np.where(scale > 0.0, scale, 1.0)
-        picked = cls._picked(len(dry))
         gram = columns @ columns.T / np.outer(scale, scale)
-        gram = gram[picked[:, :, None], picked[:, None, :]] + _RIDGE * np.eye(4)
-        return cls(columns, scale, gram)
+        solving = np.zeros((len(dry), 16, 4, 4))
+        for k, at in enumerate(_picked(len(dry))):
+            whole = gram[np.ix_(at, at)] + _RIDGE * np.eye(4)
+            for some in range(1, 16):
+                own = [i for i in range(4) if some >> i & 1]
+                solving[k, some][np.ix_(own, own)] = np.linalg.inv(whole[np.ix_(own, own)])
+        return cls(columns, scale, solving)
 
-    @staticmethod
-    def _picked(frictions: int) -> NDArray[np.intp]:
-        return np.array([[0, 1, 2, 3 + k] for k in range(frictions)])
+    def fitted(self, force: Array) -> tuple[Array, int]:
+        """Return the coefficients (4,) that fit a force (N,) best, and the place of the friction.
 
-    def columns_with(self, velocity: Array, reversal: float) -> Array:
-        """Return the columns (4, N) of a device whose friction reverses over a range of speed."""
-        return np.concatenate([self.columns[:3], np.tanh(velocity / reversal)[None]])
+        None is negative: the best of the sets of columns that need no negative one.
+        """
+        at = _picked(len(self.solving))
+        side = (self.columns @ force / self.scale)[at]
+        found = np.einsum("tsij,tj->tsi", self.solving, side)
+        gained = np.einsum("tsi,ti->ts", found, side)
+        gained[found.min(axis=2) < 0.0] = -1.0
+        k, some = np.unravel_index(int(gained.argmax()), gained.shape)
+        return found[k, some] / self.scale[at[k]], int(k)
 
-    def fitted(self, force: Array) -> tuple[Array, Array]:
-        """Return coefficients (T, 4), none negative, and misfits (T,) of a force (N,) with each."""
-        picked = self._picked(len(self.gram))
-        side = (self.columns @ force / self.scale)[picked]
-        found = np.linalg.solve(self.gram, side[..., None])[..., 0]
-        for k in np.flatnonzero(found.min(axis=1) < 0.0):
-            factor = np.linalg.cholesky(self.gram[k])
-            found[k] = nnls(factor.T, np.linalg.solve(factor, side[k]))[0]
-        misfit = force @ force - np.einsum(
-            "ti,ti->t", found, 2.0 * side - np.einsum("tij,tj->ti", self.gram, found)
-        )
-        return found / self.scale[picked], misfit
+
+def _picked(frictions: int) -> NDArray[np.intp]:
+    """Return the places (T, 4) of what all devices have and of each friction."""
+    return np.array([[0, 1, 2, 3 + k] for k in range(frictions)])
 
 
 @dataclass
@@ -183,31 +183,19 @@ def _stiffness(force: Array, motion: Motion, force_of: ForceOf) -> float:
 
 def _device(force: Array, motion: Motion) -> JointDevice:
     """Return the device without a spring."""
-    v = motion.velocity[_seen(motion)]
     top = float(np.abs(motion.velocity).max())
     if not np.all(np.isfinite(force)) or top == 0.0:
         return JointDevice(0.0, 0.0, 0.0, 0.0, 1.0, 0.0, _NONE, 1.0)
     sought = force[_seen(motion)]
     sought = sought - sought.mean()
     resistances = _resistances_of(motion)
-    found, left = resistances.fitted(sought)
-    best = int(left.argmin())
-    reversal = _REVERSALS[best] * top
-    size = float(np.sqrt(np.mean(sought**2)))
-    if found[best, 3] < _LEAST_DRY * size:
-        best, reversal = 0, _REVERSALS[0] * top
-        found[0, 3] = 0.0
-    elif 0 < best < left.size - 1:
-        before, at, after = left[best - 1 : best + 2]
-        shift = 0.5 * (before - after) / max(before - 2.0 * at + after, before - at, 1e-300)
-        reversal *= (_REVERSALS[1] / _REVERSALS[0]) ** shift
-        closer = _Resistances.of(resistances.columns[:3], np.tanh(v / reversal)[None])
-        found, best = closer.fitted(sought)[0], 0
-    mass, viscous, quadratic, dry = (float(c) for c in found[best])
-    device = JointDevice(mass, viscous, quadratic, dry, float(reversal), 0.0, _NONE, top)
-    sought -= found[best] @ resistances.columns_with(v, reversal)
-    curve = _curves_of(motion).fitted(sought)
-    return _with_curve(device, curve) if np.abs(curve).max() > _LEAST_CURVE * size else device
+    found, best = resistances.fitted(sought)
+    mass, viscous, quadratic, dry = (float(c) for c in found)
+    device = JointDevice(mass, viscous, quadratic, dry, _REVERSALS[best] * top, 0.0, _NONE, top)
+    left = sought - found @ resistances.columns[[0, 1, 2, 3 + best]]
+    curve = _curves_of(motion).fitted(left)
+    least = _LEAST_CURVE * float(np.sqrt(np.mean(sought**2)))
+    return _with_curve(device, curve) if np.abs(curve).max() > least else device
 
 
 def _with_curve(device: JointDevice, curve: Array) -> JointDevice:

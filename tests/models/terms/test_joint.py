@@ -77,7 +77,7 @@ def test_a_damper_of_hardly_any_mass_follows_its_spring(mass):
     lines[1:] *= (3000.0 * s * 4e4 / (3000.0 * s + 4e4))[1:]
     lines[0] = 0.0
     exact = np.fft.irfft(lines, force.size)
-    assert np.std(found - exact) < 0.02 * np.std(exact)
+    assert np.std(found - exact) < 0.01 * np.std(exact)
 
 
 @pytest.mark.parametrize("per_second", [60.0, 1000.0])
@@ -125,7 +125,6 @@ def test_the_device_that_fits_a_force_is_the_one_that_made_it(reversal):
     assert found.mass == pytest.approx(MASS, rel=2e-3)
     assert np.std(resistance - made) < 0.03 * np.std(made)
     assert found.dry == pytest.approx(80.0, rel=0.05)
-    assert found.reversal == pytest.approx(pace, rel=0.2)
 
 
 def test_a_force_that_is_not_finite_has_no_device():
@@ -248,4 +247,4 @@ def test_a_damper_of_any_curve_behind_a_spring_is_that_of_an_integrator(power, y
         max_step=2e-3,
     ).y[0]
     assert np.std(exact - force) > 0.06 * np.std(force)
-    assert np.std(found - exact) < 0.02 * np.std(exact)
+    assert np.std(found - exact) < 0.01 * np.std(exact)

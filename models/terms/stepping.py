@@ -1,0 +1,85 @@
+"""What the steppers of joints share; numba compiles it into each of them."""
+
+import numpy as np
+
+from models.checks import Array
+from models.compiled import compiled
+
+SETTLED = 5e-4
+"""Of the deepest bend and of the greatest speed, by which a cycle may end other than it began."""
+NEWTON = 2
+"""Steps for the speed after friction."""
+WIDE = 3.0
+"""Ranges of reversal, beyond which friction is whole."""
+
+
+@compiled(cache=True, inline="always")
+def on_curve(curve: Array, top: float, speed: float) -> tuple[float, float]:
+    """Return the force and the slope at a speed of a curve given at `speed_curve`'s nodes.
+
+    Beyond the last ones, at `top`, it stays as it is.
+    """
+    middle, far = curve.size // 2, abs(speed) / top
+    if far >= 1.0:
+        return curve[2 * middle] if speed > 0.0 else curve[0], 0.0
+    k = int(np.sqrt(far) * middle)
+    low, high = top * (k / middle) ** 2, top * ((k + 1) / middle) ** 2
+    step = 1 if speed > 0.0 else -1
+    near = curve[middle + step * k]
+    rise = (curve[middle + step * (k + 1)] - near) / (high - low)
+    return near + rise * (abs(speed) - low), step * rise
+
+
+@compiled(cache=True, inline="always")
+def tanh(value: float) -> float:
+    """Return the hyperbolic tangent to 2e-6 up to `WIDE`, from its continued fraction."""
+    s = value * value
+    above = 135135.0 + s * (17325.0 + s * (378.0 + s))
+    below = 135135.0 + s * (62370.0 + s * (3150.0 + s * 28.0))
+    return min(max(value * above / below, -1.0), 1.0)
+
+
+@compiled(cache=True, error_model="numpy")
+def begin(
+    before: Array, known: int, place: float, speed: float, place_now: float, speed_now: float
+) -> int:
+    """Return how many cycles' beginnings are in `before`; after three, the steady one is first.
+
+    From cycle to cycle a state nearly follows a linear map, whose fixed point three steps of it
+    give by Cayley and Hamilton. Where the map does not contract the last two are kept.
+    """
+    before[known] = place, speed
+    if known < 2:
+        return known + 1
+    a, b = before[1] - before[0], before[2] - before[1]
+    c = np.array([place_now, speed_now]) - before[2]
+    area = a[0] * b[1] - a[1] * b[0]
+    if area != 0.0:  # the map takes a to b and b to c
+        trace = (a[0] * c[1] - a[1] * c[0]) / area
+        product = (b[0] * c[1] - b[1] * c[0]) / area
+        if abs(product) < 1.0 and abs(trace) < 1.0 + product:
+            before[0] = before[2] + (c - product * b) / (1.0 - trace + product)
+            return 3
+    before[0], before[1] = before[1].copy(), before[2].copy()
+    return 2
+
+
+@compiled(cache=True, inline="always")
+def with_friction(free: float, brake: float, slow: float) -> float:
+    """Return the speed that dry friction leaves of one, implicitly: it never overshoots.
+
+    Friction takes off `brake` (m/s) where it is whole and reverses over the range `slow`.
+    """
+    if brake == 0.0:
+        return free
+    if abs(free) > WIDE * slow + brake:
+        return free - brake if free > 0.0 else free + brake
+    if abs(free) > slow + brake:
+        speed = free - brake if free > 0.0 else free + brake
+    else:
+        speed = free / (1.0 + brake / slow)
+    for _ in range(NEWTON):
+        turned = tanh(speed / slow)
+        slope = 1.0 + brake / slow * (1.0 - turned * turned)
+        speed -= (speed + brake * turned - free) / slope
+    return speed
