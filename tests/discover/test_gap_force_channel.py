@@ -68,17 +68,18 @@ def test_a_cell_whose_gain_goes_with_load_is_the_sensor_s(bend):
 
 
 @pytest.mark.parametrize(
-    "response",
+    ("response", "order"),
     [
-        lambda omega: 1.0 / (1.0 + 1j * omega * RC),
-        pytest.param(butterworth, marks=pytest.mark.sweep),
+        (lambda omega: 1.0 / (1.0 + 1j * omega * RC), 1.0),
+        pytest.param(butterworth, 4.0, marks=pytest.mark.sweep),
     ],
     ids=["resistor and capacitor", "Butterworth"],
 )  # fmt: skip
-def test_a_low_pass_in_the_force_channel_is_a_delay(response):
+def test_a_low_pass_in_the_force_channel_is_a_delay(response, order):
     found = close_gap(campaign(passed_by(response), noise=3e-3), BASELINE)
-    first = found.rounds[0]
+    (first,) = found.rounds
     assert first.effect == "time-delay"
+    assert first.parameters["filter_order"] == order
     assert first.probability > 0.9
     assert first.coefficient == pytest.approx(RC, rel=0.05)
     assert found.final_held_out_gap_percent < 1.1 * found.noise_percent

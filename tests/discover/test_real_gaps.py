@@ -30,10 +30,7 @@ def gap_of(name, baseline):
     ("name", "baseline", "first", "wrong"),
     [
         ("inerter-cvt-r0", RIGID, "hysteresis", {"stiffness", "quadratic-damping", "cavitation"}),
-        pytest.param(
-            "mr-utfsm-0p5A", RIGID, "hysteresis", {"time-delay", "stiffness"},
-            marks=pytest.mark.xfail(strict=True, reason="a delay joins the hysteresis"),
-        ),
+        ("mr-utfsm-0p5A", RIGID, "hysteresis", {"time-delay", "stiffness"}),
         ("fsae-damper-hard", VISCOUS, "hysteresis", {"inertia", "thermal-drift"}),
         ("fsae-damper-soft", VISCOUS, "force-offset", {"inertia", "stiffness", "thermal-drift"}),
         ("emps", RIGID, "asymmetric-damping", {"fractional-derivative"}),
