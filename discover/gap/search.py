@@ -168,7 +168,7 @@ def search(
     last: Step | None = None
     rejected = None
     here = refitted
-    for _ in range(most):
+    while len(rounds) < most:
         there = {p.fitted.id for p in here.assessed.model.terms if not p.held}
         open_ids = [e for e in effects if e not in there]
         mended = Mended(baseline, here, given if not rounds else here)
@@ -178,13 +178,10 @@ def search(
         if not added.id or added.assessed is None:
             break
         after, dropped = _settled(mended, rounds, added)
-        effect, here = added.id, after
-        if effect in dropped:  # it led to another shape of what had been added, and is not needed
-            rounds[-1] = replace(rounds[-1], after=after)
-        else:
-            rounds.append(Round(effect, last, mended.here, after, dropped))
+        effect = added.id
+        rounds.append(Round(effect, last, here, after, dropped))
+        here = after
         if tell is not None:
-            effect = rounds[-1].effect
             tell(f"round {len(rounds)} added {effect}, gap {after.gap:.3g} %")
     return Search(given, refitted, tuple(rounds), last, rejected)
 
@@ -265,45 +262,32 @@ def _settled(
     """Return the stage with a candidate, effects of earlier rounds chosen again beside it.
 
     What it replaces is dropped, where it predicts what is not fitted no worse than that did. What
-    it does not, may serve better in another shape. Beside that the candidate may not be needed.
+    it does not, may serve better in another shape.
     """
-    baseline, reshaped = mended.baseline, False
+    assessor = mended.baseline.assessor
     there, dropped = mended.by(added), list[str]()
     priors = {r.effect: r.step.best.log_prior for r in rounds if r.effect != added.id}
     for name in priors:
-        now, own = there.assessed, _of(there.assessed, name)
-        if not own:
+        assessed = there.assessed
+        places = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == name]
+        if not places:
             continue
-        less = _less(baseline, now, name)
-        if is_needed(less, now):
-            again = chosen_again(baseline.assessor, now, less, own, priors[name])
+        less = assessed.model
+        for place in reversed(places):
+            less = less.without(place)
+        without = assessor.assess(less, assessed.place)
+        if is_needed(without, assessed):
+            own = [assessed.model.terms[i].fitted for i in places]
+            again = chosen_again(assessor, assessed, without, own, priors[name])
             if again.id and again.assessed is not None:
-                after = stage(baseline, again.assessed)
-                if not _is_worse(there, after):
-                    there, reshaped = after, True
+                after = stage(mended.baseline, again.assessed)
+                there = there if _is_worse(there, after) else after
             continue
-        after = stage(baseline, less)
+        after = stage(mended.baseline, without)
         if not _is_worse(mended.here, after):
             there = after
             dropped.append(name)
-    if reshaped and not dropped:
-        less = _less(baseline, there.assessed, added.id)
-        if not is_needed(less, there.assessed):
-            after = stage(baseline, less)
-            if not _is_worse(mended.here, after):
-                return after, (added.id,)
     return there, tuple(dropped)
-
-
-def _of(assessed: Assessed, name: str) -> list[FittedTerm]:
-    """Return the terms of an id in a model."""
-    return [p.fitted for p in assessed.model.terms if p.fitted.id == name]
-
-
-def _less(baseline: Baseline, assessed: Assessed, name: str) -> Assessed:
-    """Return a model without the terms of an id, fitted."""
-    kept = Composite(tuple(p for p in assessed.model.terms if p.fitted.id != name))
-    return baseline.assessor.assess(kept, assessed.place)
 
 
 def _leaves_less(now: Stage, was: Stage) -> bool:

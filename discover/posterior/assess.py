@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 
 from discover.posterior.climb import Place, climb
 from discover.posterior.evidence import Solved
-from discover.posterior.local import Judged, Local, fitted, judged, local_of
+from discover.posterior.local import Judged, Local, fit_of, fitted, judged, local_of
 from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Evaluator
 from discover.posterior.setup import behind
@@ -120,6 +120,15 @@ class Assessor:
         if space is not self.space:
             space.forget()
         return local.model, value
+
+    def density(self, model: Composite, place: Place) -> float:
+        """Return the log density of a model as it is at some sizes, nats; on the coarse rows."""
+        space = self.behind(model)
+        force = self.evaluator.coarse.force(model)
+        value = fit_of(space, force, place.sizes(space.own_unit), self.curve_of(model))
+        if space is not self.space:
+            space.forget()
+        return value
 
     def nearest(self, models: Sequence[Composite], place: Place) -> Composite:
         """Return the model that a few steps of a fit make most probable, after these steps."""

@@ -16,6 +16,7 @@ from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.catalogue import trials_of
 from discover.posterior.climb import Place
 from discover.posterior.left_out import predicted_no_worse, unseen
+from discover.posterior.model import Composite
 from discover.posterior.own_share import own_lines
 from discover.posterior.step import Candidate, Step, ordered
 from discover.posterior.weigh import Gain, Trials, gains
@@ -188,11 +189,49 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
     for gain, model in chosen:
         if np.all(np.isfinite(assessor.evaluator.force(model))):  # on the fine rows too
             first = assessor.assess(model, start)
-            return Candidate(
+            found = Candidate(
                 gain.trial.id, first.value + gain.trial.log_prior, first, len(gain.trial.terms)
             )
+            return found if first.quiet else _turned(assessor, found, starts)
     # At the sizes at which it would gain most it has no finite force.
     return Candidate(starts[0].trial.id, now.value, None)
+
+
+def _turned(assessor: Assessor, found: Candidate, starts: Sequence[Gain]) -> Candidate:
+    """Return a candidate with the discrete choice that is best at the values which were fitted.
+
+    Before they are, choices may be alike: filters of all orders begin as the same delay.
+    """
+    assessed = found.assessed
+    if assessed is None or found.count != 1:
+        return found
+    model, own = assessed.model, assessed.model.terms[-1].fitted
+    others, seen = list[tuple[float, Composite, Gain]](), {_choice([own])}
+    here = assessor.density(model, assessed.place)
+    for gain in starts:
+        choice = _choice(gain.trial.terms)
+        if choice in seen or len(gain.trial.terms) > 1:
+            continue
+        seen.add(choice)
+        other = model.without(len(model.terms) - 1).plus(_in_choice(own, gain.trial.terms[0]))
+        others.append((assessor.density(other, assessed.place), other, gain))
+    value, other, gain = max(others, key=lambda o: o[0], default=(here, model, starts[0]))
+    if not value > here:
+        return found
+    there = assessor.assess(other, assessed.place)
+    turned = Candidate(found.id, there.value + gain.trial.log_prior, there, 1)
+    return turned if turned.value > found.value else found
+
+
+def _in_choice(fitted: FittedTerm, start: FittedTerm) -> FittedTerm:
+    """Return a term as it is fitted, but in the discrete choice of a start."""
+    shape = {
+        p.name: fitted.shape[p.name]
+        if p.fitted and (fitted.shape[p.name] == 0.0) == (start.shape[p.name] == 0.0)
+        else start.shape[p.name]
+        for p in fitted.term.parameters
+    }
+    return FittedTerm(fitted.id, fitted.coefficient, shape)
 
 
 def _starting(ranked: Sequence[Gain]) -> list[Gain]:

@@ -153,7 +153,7 @@ def fitted(
             values = _bounded(here, wanted, share, space.scales)
             trial = here.model.with_values(here.numbers, values)
             # A prior only takes away, so where the fit is no better the slopes are not needed.
-            if _fit(space, evaluator.force(trial), sizes, curve) > best:
+            if fit_of(space, evaluator.force(trial), sizes, curve) > best:
                 there = local_of(space, evaluator, trial, here.numbers)
                 value = _density(space, there, sizes, curve)
                 if value > best:
@@ -219,10 +219,10 @@ def _bounded(local: Local, wanted: Array, share: float, scales: Scales) -> list[
 def _density(space: Space, local: Local, sizes: Sizes, curve: Part | None) -> float:
     """Return the log density of a model at its very values, with their prior, nats."""
     prior = -0.5 * float(np.sum((local.values / local.spread) ** 2))
-    return _fit(space, local.force, sizes, curve) + prior
+    return fit_of(space, local.force, sizes, curve) + prior
 
 
-def _fit(space: Space, force: Array, sizes: Sizes, curve: Part | None) -> float:
+def fit_of(space: Space, force: Array, sizes: Sizes, curve: Part | None) -> float:
     """Return the log density of the measured force beside a model's (U, R), nats."""
     left = (space.sheet.target - force)[:, None]
     if not np.all(np.isfinite(left)):
