@@ -73,7 +73,7 @@ class Assessed:
         What no term explains is not known in other records. Numbers that lean on a remainder are
         right only beside it; these are the ones by which the terms alone come closest.
         """
-        if _is_small(self.place) or not self.local.numbers or self.value == -np.inf:
+        if self.place.remainder <= _SMALL or not self.local.numbers or self.value == -np.inf:
             return self
         local, place, space = self.local, self.place, self.space
         visited: dict[Place, float] = {}
@@ -205,14 +205,12 @@ def _at(
     return visited[place]
 
 
-def _is_small(place: Place) -> bool:
-    """Tell whether at some sizes no more is left than a model need not explain."""
-    return place.remainder <= _SMALL and place.loudest <= _SMALL and place.own <= _ORDINARY
-
-
 def is_quiet(visited: Mapping[Place, float]) -> bool:
     """Tell whether it may be that no more than noise is left, from log evidence by sizes, nats."""
-    small = [v for p, v in visited.items() if _is_small(p)]
+    small = [
+        v for p, v in visited.items()
+        if p.remainder <= _SMALL and p.loudest <= _SMALL and p.own <= _ORDINARY
+    ]
     if not small:
         return False
     return bool(logsumexp(small) - logsumexp(list(visited.values())) > np.log(_POSSIBLE))
