@@ -13,7 +13,7 @@ from models.compiled import compiled
 from models.motion import Motion
 from models.terms.joint_device import JointDevice
 from models.terms.spring_steps import carried_by_spring
-from models.terms.stepping import SETTLED, begin, on_curve, with_friction
+from models.terms.stepping import SETTLED, begin, with_friction
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
 _PASSES = 8  # at most, until a cycle ends as it began
@@ -77,19 +77,21 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: JointDevic
     device : JointDevice
         What `device_of` makes of the force.
     """
-    mass, viscous, quadratic, dry, reversal, spring, curve, top = device
-    v, x = motion.velocity, motion.displacement - motion.displacement.mean()
-    behind = 0.0 if joint.fluid_only else dry
-    rigid = device.force(motion, dry=not joint.fluid_only)
+    bears = joint.gap == 0.0 and joint.lower == -np.inf and joint.upper == np.inf
+    driven = device.for_spring() if bears else device._replace(curve=device.curve[:0])
+    rigid = driven.force(motion, dry=not joint.fluid_only)
     if not np.any(rigid):
         return force
     if not np.isfinite(rigid @ rigid):
         return np.full_like(force, np.nan)  # beyond all numbers: there is no such device
-    if joint.gap == 0.0 and joint.lower == -np.inf and joint.upper == np.inf:
-        driven = device._replace(dry=behind)
+    if joint.fluid_only:
+        driven = driven._replace(dry=0.0)
+    if bears:
         load = joint.half_load, joint.load_share, joint.load_side
         carried = carried_by_spring(motion, driven, rigid, joint.stiffness, joint.loss, load)
         return np.asarray(force + carried - rigid)
+    mass, viscous, quadratic, dry, reversal, spring, _, _ = driven
+    v, x = motion.velocity, motion.displacement - motion.displacement.mean()
     most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
     resistance = viscous + quadratic * float(np.abs(v).max())
     carried_along = _ADDED_MASS * _size(rigid) / _size(motion.acceleration)
@@ -108,9 +110,9 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: JointDevic
     borne = min(max(float(rigid[start]), joint.lower), joint.upper)
     bent = borne / stiffness if joint.gap == 0.0 else 0.0
     carried = _step(
-        x, v, motion.step, inner, mass, viscous, quadratic, behind, reversal, spring, stiffness,
+        x, v, motion.step, inner, mass, viscous, quadratic, dry, reversal, spring, stiffness,
         damping, 0.5 * joint.gap, joint.soft, joint.lower, joint.upper, int(joint.refilled),
-        joint.lag, joint.valve, passes, start, bent, curve, top,
+        joint.lag, joint.valve, passes, start, bent,
     )
     return np.asarray(force + carried - rigid)
 
@@ -127,7 +129,7 @@ def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
     dry: float, slow: float, spring: float, stiffness: float, damping: float, half: float,
     soft: float, lower: float, upper: float, refilled: int, lag: float, valve: float, passes: int,
-    start: int, bent: float, curve: Array, top: float,
+    start: int, bent: float,
 ) -> Array:
     """Return the force that the joint carries, (N,), mean over each sample's inner steps.
 
@@ -160,9 +162,6 @@ def _step(
                 depth = end - position - slipped
                 deepest = max(deepest, abs(depth))
                 now = speed + 0.5 * h * rate  # half a step on: there the place is known
-                curved = steeper = 0.0
-                if curve.size > 0:
-                    curved, steeper = on_curve(curve, top, now)
                 force = 0.0
                 if soft > 0.0:
                     pressed, bearing = _flanks(abs(depth) / soft, half / soft)
@@ -176,7 +175,6 @@ def _step(
                     force, held = side * push, held * damping
                     if held > 0.0:
                         resisted = (viscous + quadratic * abs(now)) * now + spring * position
-                        resisted += curved
                         ahead = (force + held * (now - speed) - resisted) / (mass + 0.5 * h * held)
                         force += held * (now - speed - 0.5 * h * ahead)
                 else:
@@ -204,11 +202,7 @@ def _step(
                 total += force
                 begun = speed
                 resisted = (viscous + quadratic * abs(now)) * now + spring * position
-                if steeper > 0.0:  # implicitly: however steep, it is not passed by
-                    resisted += curved + steeper * (speed - now)
-                    speed += h * (force - resisted) / (mass + 0.5 * h * steeper)
-                else:
-                    speed += h * (force - resisted - curved) / mass
+                speed += h * (force - resisted) / mass
                 speed = with_friction(speed, brake, slow)
                 rate = (speed - begun) / h
                 position += h * speed

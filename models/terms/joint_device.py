@@ -1,7 +1,7 @@
 """The device behind a joint: a spring, and the mass and resistances that fit its other force.
 
 What these leave of it and is a curve of speed, as that of a valve or of thinning oil, is behind
-the joint too. The rest, as a memory's, moves with the driven end.
+a spring too. The rest, as a memory's, moves with the driven end.
 """
 
 from dataclasses import dataclass, field, replace
@@ -56,6 +56,21 @@ class JointDevice(NamedTuple):
         if self.curve.size:
             found = found + np.interp(v, nodes_of(self.top), self.curve)
         return np.asarray(found)
+
+    def for_spring(self) -> Self:
+        """Return the same with as much of it dry as there is just beyond where that reverses.
+
+        Beside more, the curve would fall steeply there, which can't be stepped.
+        """
+        if not self.curve.size:
+            return self
+        nodes, middle = nodes_of(self.top), self.curve.size // 2
+        turned = np.tanh(nodes / self.reversal)
+        whole = self.curve + self.dry * turned
+        beyond = min(int(np.searchsorted(nodes[middle:], _BEYOND * self.reversal)), middle)
+        there = min(whole[middle + beyond], -whole[middle - beyond]) / turned[middle + beyond]
+        dry = max(float(there), 0.0)
+        return self._replace(dry=dry, curve=np.asarray(whole - dry * turned))
 
 
 _NONE = np.zeros(0)
@@ -195,23 +210,7 @@ def _device(force: Array, motion: Motion) -> JointDevice:
     left = sought - found @ resistances.columns[[0, 1, 2, 3 + best]]
     curve = _curves_of(motion).fitted(left)
     least = _LEAST_CURVE * float(np.sqrt(np.mean(sought**2)))
-    return _with_curve(device, curve) if np.abs(curve).max() > least else device
-
-
-def _with_curve(device: JointDevice, curve: Array) -> JointDevice:
-    """Return a device with what else is a curve of speed.
-
-    Its dry resistance is what there is just beyond the range over which it reverses: beside a
-    greater one the curve would fall steeply there, which can't be stepped.
-    """
-    nodes, middle = nodes_of(device.top), curve.size // 2
-    turned = np.tanh(nodes / device.reversal)
-    whole = curve + device.dry * turned
-    beyond = int(np.searchsorted(nodes[middle:], _BEYOND * device.reversal))
-    beyond = min(beyond, middle)
-    there = min(whole[middle + beyond], -whole[middle - beyond]) / turned[middle + beyond]
-    dry = max(float(there), 0.0)
-    return device._replace(dry=dry, curve=np.asarray(whole - dry * turned))
+    return device._replace(curve=curve) if np.abs(curve).max() > least else device
 
 
 def _resistances_of(motion: Motion) -> _Resistances:
