@@ -73,6 +73,8 @@ def _coefficients(
     search: BandSearch, banded: Banded, placed: Sequence[tuple[Part, tuple[float, ...] | None]]
 ) -> list[Array]:
     """Return the most probable coefficients of each part's columns, signs aside."""
+    if not placed:
+        return []
     space, ones = search.space, np.ones(len(search.space.sheet.units))
     parts = [*placed, *((part, None) for part in search.extras)]
     columns = [

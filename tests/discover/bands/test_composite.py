@@ -11,6 +11,7 @@ from discover.posterior.model import Composite, Placed
 from discover.study import StudyOptions
 from discover.study.prepare import prepare
 from models.constitutive import FittedTerm
+from models.cores import Core
 from tests.discover.exact import campaign
 
 MASS, VISCOUS = 80.0, 2500.0
@@ -54,3 +55,11 @@ def test_a_model_with_other_terms_was_not_before():
     model = Composite((Placed(FittedTerm("stiffness", 1.0, {})),))
     assert as_it_was(model, Composite(())) is None
     assert as_it_was(model, Composite((*model.terms, *model.terms))) is None
+
+
+def test_a_structure_without_any_term_is_a_model_too(way):
+    """As where only a spring is asked for: what joins comes first."""
+    device = replace(way.device, with_friction=False, cores=(Core("other", "integer", ()),))
+    found = searched_with(device, (), None)
+    assert found.model.terms == ()
+    assert np.isfinite(found.assessed.value)
