@@ -13,12 +13,9 @@ from discover.bands.search import Banded, BandSearch
 from discover.posterior.evidence import solved
 from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Placed
-from discover.posterior.space import Part
+from discover.posterior.space import Part, begun
 from models.checks import Array
 from models.constitutive import FittedTerm
-
-_BEGUN = 1e-9
-"""Of a coefficient that its sign would hold at zero: a fit can still raise it."""
 
 
 def composite_of(
@@ -47,7 +44,7 @@ def composite_of(
         placed.append((friction, None))
     found = _coefficients(search, banded, placed)
     terms = [
-        [Placed(_begun(t, value), share) for t, value in zip(part.terms, values, strict=False)]
+        [Placed(begun(t, value), share) for t, value in zip(part.terms, values, strict=False)]
         for (part, share), values in zip(placed, found, strict=True)
     ]
     shared = [t[0] for t in terms[own:]]
@@ -87,8 +84,3 @@ def _coefficients(
     mean = solved(gram[:-1, :-1], gram[:-1, -1], spread, np.zeros(spread.size), 0.0).mean
     ends = np.cumsum([part.columns.size for part, _ in parts])
     return np.split(mean, ends[:-1])[: len(placed)]
-
-
-def _begun(term: FittedTerm, value: float) -> FittedTerm:
-    low, high = term.term.coefficient_bounds(term.shape)
-    return FittedTerm(term.id, float(np.clip(value, low, high)) or _BEGUN, term.shape)

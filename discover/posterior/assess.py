@@ -19,12 +19,13 @@ from discover.posterior.space import Part, Space, departures
 from discover.rows.columns import Behind
 
 _ROUNDS = 3  # of fitting and climbing
-_FEW_STEPS = 3  # of a fit from each of several places, of which the best goes on
 _SMALL = -10
 """Power of two, of the force: what is left below it is nothing that a model need explain."""
 _ORDINARY = -3
 """Power of two, of what would make the whole force: by no more does dry friction differ from record
 to record where nothing else is behind it."""
+FEW_STEPS = 3
+"""Of a fit from each of several places, of which the best goes on."""
 _POSSIBLE = 0.05
 """Probability from which it may be that no more is left."""
 
@@ -132,7 +133,7 @@ class Assessor:
 
     def nearest(self, models: Sequence[Composite], place: Place) -> Composite:
         """Return the model that a few steps of a fit make most probable, after these steps."""
-        begun = [self.glance(m, place, iterations=_FEW_STEPS) for m in models]
+        begun = [self.glance(m, place, iterations=FEW_STEPS) for m in models]
         return max(begun, key=lambda b: b[1])[0]
 
     def assess(self, model: Composite, start: Place, *, refit: bool = True) -> Assessed:

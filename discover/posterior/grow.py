@@ -12,12 +12,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from discover.posterior.assess import Assessed, Assessor
+from discover.posterior.assess import FEW_STEPS, Assessed, Assessor
 from discover.posterior.catalogue import trials_of
 from discover.posterior.climb import Place
 from discover.posterior.left_out import predicted_no_worse, unseen
 from discover.posterior.model import Composite
 from discover.posterior.own_share import own_lines
+from discover.posterior.space import begun
 from discover.posterior.step import Candidate, Step, ordered
 from discover.posterior.weigh import Gain, Trials, gains
 from models.checks import Array
@@ -26,7 +27,6 @@ from models.terms import TERMS
 
 _NAMES = 5  # that are fitted, of those that gain most
 _SHAPES = 3  # of each, from which a fit starts, the best of each discrete choice first
-_FEW_STEPS = 3  # of a fit from each of several shapes, of which the best goes on
 _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already
@@ -183,9 +183,9 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
         if np.all(np.isfinite(evaluator.force(model := now.model.plus(*_begun(gain)))))
     ]
     if len(chosen) > 1:
-        begun = [(g, *assessor.glance(m, start, iterations=_FEW_STEPS)) for g, m in chosen]
-        begun.sort(key=lambda b: b[2] + b[0].trial.log_prior, reverse=True)
-        chosen = [(g, m) for g, m, _ in begun]
+        glanced = [(g, *assessor.glance(m, start, iterations=FEW_STEPS)) for g, m in chosen]
+        glanced.sort(key=lambda b: b[2] + b[0].trial.log_prior, reverse=True)
+        chosen = [(g, m) for g, m, _ in glanced]
     for gain, model in chosen:
         if np.all(np.isfinite(assessor.evaluator.force(model))):  # on the fine rows too
             first = assessor.assess(model, start)
@@ -270,11 +270,6 @@ def _is_plain(gain: Gain) -> bool:
 
 def _begun(gain: Gain) -> list[FittedTerm]:
     """Return the terms of a trial at the size at which they gain most, within their bounds."""
-    found = []
-    for t, size in zip(gain.trial.terms, gain.coefficients, strict=True):
-        low, high = t.term.coefficient_bounds(t.shape)
-        value = float(np.clip(size, low, high))
-        if value == 0.0:
-            value = t.coefficient if t.term.acts != "force" else 1e-9
-        found.append(FittedTerm(t.id, value, t.shape))
-    return found
+    return [
+        begun(t, size) for t, size in zip(gain.trial.terms, gain.coefficients, strict=True)
+    ]

@@ -20,8 +20,8 @@ _CURVE_SCALES = (1.0, 0.3, 0.1, 0.03, 0.01)
 """Sizes of a term with a curve of its own, over that at which it makes the whole force."""
 _MOST_HELD = 2**31
 """Bytes of products at sizes that are held: the oldest are made again where they are asked for."""
-_OWN = (0, 1, 2)
-"""Thirds of a term's curves, from each of which one may be a unit's own."""
+_LEAST_BEGUN = 1e-9
+"""Of a coefficient, in its unit, that is zero where a fit starts."""
 
 
 ColumnsOf = Callable[[RecordRows, Sequence[FittedTerm]], Array]
@@ -132,6 +132,16 @@ def _bytes(given: Given) -> int:
 def unit(term: Term, shape: Shape) -> FittedTerm:
     """Return a term of coefficient one."""
     return FittedTerm(term.id, 1.0, dict(shape))
+
+
+def begun(term: FittedTerm, size: float) -> FittedTerm:
+    """Return a term at a size within its bounds, from which a fit may start.
+
+    Where its sign would hold it at zero a fit can still raise it.
+    """
+    low, high = term.term.coefficient_bounds(term.shape)
+    least = term.coefficient if term.term.acts != "force" else _LEAST_BEGUN
+    return FittedTerm(term.id, float(np.clip(size, low, high)) or least, term.shape)
 
 
 def curve_part(

@@ -13,18 +13,21 @@ from models.compiled import compiled
 from models.motion import Motion
 from models.terms.joint_device import JointDevice
 from models.terms.spring_steps import carried_by_spring
-from models.terms.stepping import SETTLED, begin, with_friction
+from models.terms.stepping import (
+    SETTLED,
+    begin,
+    driven_end,
+    forgetting,
+    passes_of,
+    size_of,
+    with_friction,
+)
 
 _STEP = 0.15  # of the joint's natural period over 2 pi
-_PASSES = 8  # at most, until a cycle ends as it began
-_LEAD = 4  # of a cycle this part is stepped ahead: most joints forget within it how they began
-_SHORT = 8192  # samples of one cycle; longer periods of many cycles settle within one
 _LEAST_INNER, _MOST_INNER = 4, 60
 _MOST_STEPS = 1_000_000  # of one pass: a stiffer joint is as stiff as they can follow
 _ADDED_MASS = 1e-3  # of what would make the whole force: a damper's own time can't be stepped
 _SLOWED = 0.5  # of its speed, by which resistance slows a mass in an inner step at most
-_FORGETS = 7.0  # times e that what a joint began with decays over a cycle at least
-_LEAST_LOSS = 0.005  # that is enough for it, where it moves of its own many times a cycle
 _FAR = 15.0  # widths from a soft flank, where it is met or not
 
 
@@ -94,19 +97,16 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: JointDevic
     v, x = motion.velocity, motion.displacement - motion.displacement.mean()
     most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
     resistance = viscous + quadratic * float(np.abs(v).max())
-    carried_along = _ADDED_MASS * _size(rigid) / _size(motion.acceleration)
+    carried_along = _ADDED_MASS * size_of(rigid) / size_of(motion.acceleration)
     mass = max(mass, carried_along, resistance * motion.step / (_SLOWED * most))
     natural = float(np.sqrt((joint.stiffness + max(spring, 0.0)) / mass))
     fastest = max(natural, resistance / mass)
     inner = int(np.clip(np.ceil(fastest * motion.step / _STEP), 1, most))
     stiffness = min(joint.stiffness, mass * (_STEP * 2.0 * inner / motion.step) ** 2)
-    loss = joint.loss
-    if joint.gap == 0.0 and motion.periodic:
-        cycle = natural * motion.step * x.size  # rad of the joint's own motion
-        loss = max(loss, min(_FORGETS / cycle, _LEAST_LOSS))
+    loss = joint.loss if joint.gap > 0.0 else forgetting(joint.loss, natural, motion)
     damping = 2.0 * loss * np.sqrt(stiffness * mass)
-    passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
-    start = x.size - x.size // _LEAD if passes > 1 and not joint.refilled else 0
+    passes, start = passes_of(motion)
+    start = 0 if joint.refilled else start
     borne = min(max(float(rigid[start]), joint.lower), joint.upper)
     bent = borne / stiffness if joint.gap == 0.0 else 0.0
     carried = _step(
@@ -115,11 +115,6 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: JointDevic
         joint.lag, joint.valve, passes, start, bent,
     )
     return np.asarray(force + carried - rigid)
-
-
-def _size(values: Array) -> float:
-    """Return the root mean square."""
-    return float(np.sqrt(values @ values / values.size))
 
 
 # One compiled function, long as it is: the joint's state is a dozen local numbers that every part
@@ -149,16 +144,10 @@ def _step(
         was, was_speed = position - x[0] + slipped, speed
         deepest = 0.0
         for i in range(start, size):
-            following = i + 1 if i + 1 < size else 0
             total = 0.0
             for k in range(inner):
                 share = (k - 0.5 * (inner - 1)) / inner
-                if share >= 0.0:
-                    end = x[i] + share * (x[following] - x[i])
-                    pace = v[i] + share * (v[following] - v[i])
-                else:
-                    end = x[i] + share * (x[i] - x[i - 1])
-                    pace = v[i] + share * (v[i] - v[i - 1])
+                end, pace = driven_end(x, v, i, share)
                 depth = end - position - slipped
                 deepest = max(deepest, abs(depth))
                 now = speed + 0.5 * h * rate  # half a step on: there the place is known

@@ -6,16 +6,20 @@ from models.checks import Array
 from models.compiled import compiled
 from models.motion import Motion
 from models.terms.joint_device import JointDevice
-from models.terms.stepping import SETTLED, begin, on_curve, with_friction
+from models.terms.stepping import (
+    SETTLED,
+    begin,
+    driven_end,
+    forgetting,
+    on_curve,
+    passes_of,
+    size_of,
+    with_friction,
+)
 
 _STEP = 0.4  # of the natural period over 2 pi, where it can be followed
 _MOST_INNER = 12  # what is faster than this is followed on average
-_PASSES = 8  # at most, until a cycle ends as it began
-_LEAD = 4  # of a cycle this part is stepped ahead: most springs forget within it how they began
-_SHORT = 8192  # samples of one cycle; longer periods of many cycles settle within one
 _ADDED_MASS = 1e-4  # of what would make the whole force: a spring's loss is told by a mass
-_FORGETS = 7.0  # times e that what a spring began with decays over a cycle at least
-_LEAST_LOSS = 0.005  # that is enough for it, where it moves of its own many times a cycle
 
 
 def carried_by_spring(
@@ -44,7 +48,7 @@ def carried_by_spring(
         How stiffness changes under load: `half_load`, `load_share`, `load_side` of a `Joint`.
     """
     x, v = motion.displacement - motion.displacement.mean(), motion.velocity
-    mass = max(device.mass, _ADDED_MASS * _size(rigid) / _size(motion.acceleration))
+    mass = max(device.mass, _ADDED_MASS * size_of(rigid) / size_of(motion.acceleration))
     natural = float(np.sqrt((stiffness + max(device.spring, 0.0)) / mass))
     fastest = natural
     if load[0] > 0.0:
@@ -52,21 +56,13 @@ def carried_by_spring(
         taken = max(load[1], 0.0)
         fastest /= np.sqrt(1.0 - taken + taken / squeezed**2)
     inner = int(np.clip(np.ceil(fastest * motion.step / _STEP), 1, _MOST_INNER))
-    if motion.periodic:
-        cycle = natural * motion.step * x.size  # rad of the spring's own motion
-        loss = max(loss, min(_FORGETS / cycle, _LEAST_LOSS))
-    passes = 1 if not motion.periodic else (_PASSES if x.size <= _SHORT else 2)
-    start = x.size - x.size // _LEAD if passes > 1 else 0
+    loss = forgetting(loss, natural, motion)
+    passes, start = passes_of(motion)
     return np.asarray(_step(
         x, v, motion.step, inner, mass, device.viscous, device.quadratic, device.dry,
         device.reversal, device.spring, stiffness, 2.0 * loss * np.sqrt(stiffness * mass), *load,
         passes, start, float(rigid[start]) / stiffness, device.curve, device.top,
     ))  # fmt: skip
-
-
-def _size(values: Array) -> float:
-    """Return the root mean square."""
-    return float(np.sqrt(values @ values / values.size))
 
 
 @compiled(cache=True, fastmath=True, error_model="numpy", nogil=True)
@@ -95,16 +91,10 @@ def _step(
         was, was_speed = position - x[0], speed
         deepest = 0.0
         for i in range(start, size):
-            following = i + 1 if i + 1 < size else 0
             total = 0.0
             for k in range(inner):
                 share = (k - 0.5 * (inner - 1)) / inner
-                if share >= 0.0:
-                    end = x[i] + share * (x[following] - x[i])
-                    pace = v[i] + share * (v[following] - v[i])
-                else:
-                    end = x[i] + share * (x[i] - x[i - 1])
-                    pace = v[i] + share * (v[i] - v[i - 1])
+                end, pace = driven_end(x, v, i, share)
                 depth = end - position
                 deepest = max(deepest, abs(depth))
                 lossy, stiff = damping, stiffness

@@ -1,16 +1,54 @@
-"""What the steppers of joints share; numba compiles it into each of them."""
+"""What the steppers of joints share; numba compiles what it can into each of them."""
 
 import numpy as np
 
 from models.checks import Array
 from models.compiled import compiled
+from models.motion import Motion
 
+_PASSES = 8  # at most, until a cycle ends as it began
+_LEAD = 4  # of a cycle this part is stepped ahead: most joints forget within it how they began
+_SHORT = 8192  # samples of one cycle; longer periods of many cycles settle within one
+_FORGETS = 7.0  # times e that what a joint began with decays over a cycle at least
+_LEAST_LOSS = 0.005  # that is enough for it, where it moves of its own many times a cycle
 SETTLED = 5e-4
 """Of the deepest bend and of the greatest speed, by which a cycle may end other than it began."""
 NEWTON = 2
 """Steps for the speed after friction."""
 WIDE = 3.0
 """Ranges of reversal, beyond which friction is whole."""
+
+
+def passes_of(motion: Motion) -> tuple[int, int]:
+    """Return how often a motion is gone through at most, and the sample at which that begins."""
+    size = motion.time.size
+    passes = 1 if not motion.periodic else (_PASSES if size <= _SHORT else 2)
+    return passes, size - size // _LEAD if passes > 1 else 0
+
+
+def forgetting(loss: float, natural: float, motion: Motion) -> float:
+    """Return a joint's loss, with which in a steady state it forgets how it began.
+
+    Its natural frequency is in rad/s.
+    """
+    if not motion.periodic:
+        return loss
+    cycle = natural * motion.step * motion.time.size  # rad of the joint's own motion
+    return max(loss, min(_FORGETS / cycle, _LEAST_LOSS))
+
+
+def size_of(values: Array) -> float:
+    """Return the root mean square."""
+    return float(np.sqrt(values @ values / values.size))
+
+
+@compiled(cache=True, inline="always")
+def driven_end(x: Array, v: Array, i: int, share: float) -> tuple[float, float]:
+    """Return place and speed of the driven end a share of a sample after sample i, or before it."""
+    if share >= 0.0:
+        following = i + 1 if i + 1 < x.size else 0
+        return x[i] + share * (x[following] - x[i]), v[i] + share * (v[following] - v[i])
+    return x[i] + share * (x[i] - x[i - 1]), v[i] + share * (v[i] - v[i - 1])
 
 
 @compiled(cache=True, inline="always")
