@@ -85,7 +85,7 @@ def read_campaign(path: str | Path) -> Campaign:
         raise InputError(
             str(path),
             expected="a campaign folder, or a file of records (" + ", ".join(OPENERS) + ")",
-            found=_kind(given, "a file of another kind"),
+            found=kind_of(given, "a file of another kind"),
         )
     if not (folder / CAMPAIGN_FILE).exists():
         raise InputError(
@@ -134,7 +134,7 @@ def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Find
     read = _Reading(folder, names, units, digest)
     for entry in entries:
         read.take(entry)
-    read.finish(len(entries))
+    read.finish()
     records, findings = read.records, [*findings, *read.findings]
     findings += _guessed_units(units, guessed, read.read_units)
     _check_used(names, entries, records)
@@ -217,7 +217,7 @@ class _Reading:
             self.findings.extend(findings)
             self.read_units.append(own_units)
 
-    def finish(self, count: int) -> None:
+    def finish(self) -> None:
         """Raise what is wrong: alone as it is, else one line each."""
         if not self.errors:
             return
@@ -225,6 +225,7 @@ class _Reading:
             raise self.errors[0]
         told = self.errors[:_MOST_ERRORS]
         more = len(self.errors) - len(told)
+        count = len(self.errors) + len(self.records)
         advice = (
             f"{len(self.errors)} of {count} records can't be read"
             + (f" ({more} more than are listed)" if more else "")
@@ -291,7 +292,7 @@ def _path_of(folder: Path, name: str, *, where: str, hint: bool = True) -> Path:
         inside = target.is_relative_to(root) and not Path(name).is_absolute()
         if inside and target.is_file():
             return target
-        found = _kind(target) if inside else "outside of it"
+        found = kind_of(target) if inside else "outside of it"
         if hint and inside and not target.exists():
             found += nearest(name, _names(root))
     except OSError as error:
@@ -307,7 +308,7 @@ def _not_read(name: str, found: str, where: str) -> InputError:
     )
 
 
-def _kind(target: Path, file: str = "a file") -> str:
+def kind_of(target: Path, file: str = "a file") -> str:
     """Return in words what lies at a path."""
     if not target.exists():
         return "nothing there"

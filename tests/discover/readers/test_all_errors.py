@@ -48,6 +48,16 @@ def test_every_bad_file_is_told_and_what_to_do(
     )
 
 
+def test_every_test_of_a_file_counts_as_a_record(tmp_path: Path) -> None:
+    one = {"time [s]": TIME, "weg [mm]": DISPLACEMENT, "force [kN]": FORCE}
+    with pd.ExcelWriter(tmp_path / "a.xlsx") as book:
+        for sheet in ("one", "two"):
+            pd.DataFrame(one).to_excel(book, sheet_name=sheet, index=False)
+    (tmp_path / "campaign.toml").write_text('[[records]]\nfile = "a.xlsx"\nsheet = "*"\n')
+    with pytest.raises(InputErrors, match="2 of 2 records can't be read"):
+        read_campaign(tmp_path)
+
+
 def test_thousands_of_missing_files_are_told_soon(tmp_path: Path) -> None:
     toml = "".join(f'[[records]]\nfile = "run-{i:05}.csv"\n' for i in range(20000))
     folder = campaign(tmp_path / "c", toml=toml)
