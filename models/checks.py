@@ -16,7 +16,8 @@ Indices = NDArray[np.int_]
 
 LONGEST = 400
 """Characters of any part of a message: files hold headers and fields of any length."""
-
+LONGEST_LINE = 1900
+"""Characters of a line on the terminal, with what a log puts before it."""
 
 _LONGEST_NAME = 120
 

@@ -25,13 +25,11 @@ from discover.cli.results import one_run
 from discover.cli.signals import interrupted, leaving
 from discover.cli.simulate import simulate
 from discover.cli.synth import synth
-from models.checks import InputError, InputErrors, printable
+from models.checks import LONGEST_LINE, InputError, InputErrors, printable
 
 BAD_INPUT = 2
 INTERRUPTED = 130
 INTERNAL_ERROR = 70
-
-_LONGEST = 1900  # characters of a line, with what the terminal or a log puts before it
 
 app = typer.Typer(
     name="inerter",
@@ -136,5 +134,5 @@ def _run(given: Sequence[str]) -> object:
 
 def _complain(text: str, code: int) -> int:
     """Print one line on stderr and return `code`."""
-    print("inerter: " + printable(" ".join(text.split()), longest=_LONGEST), file=sys.stderr)
+    print("inerter: " + printable(" ".join(text.split()), longest=LONGEST_LINE), file=sys.stderr)
     return code

@@ -16,7 +16,7 @@ import typer
 from discover.cli import options
 from discover.cli.invocation import Invocation
 from discover.cli.results import hold_folder, shown_path
-from models.checks import InputError, printable
+from models.checks import LONGEST_LINE, InputError, printable
 
 if TYPE_CHECKING:
     from discover.cli.batch_work import Item
@@ -119,7 +119,7 @@ def _tell(lines: Sequence[str], files: Sequence[Path]) -> None:
     """Print what was found, and where it is."""
     names = {"table.csv": "Table", "pooled.csv": "Pooled table", "report.html": "Report"}
     for line in (*lines, *(f"{names[f.name]}: {shown_path(f)}" for f in files)):
-        typer.echo(line)
+        typer.echo(printable(line, longest=LONGEST_LINE))
 
 
 def _work_off(items: Sequence[Item], labels: Sequence[str], where: Executor) -> list[str]:
@@ -200,4 +200,4 @@ def _progress(count: int, done: int) -> Iterator[Callable[[str], None]]:
 
 def _say(text: str) -> None:
     """Print a line on stderr, above the bar where one is shown: it takes stderr over."""
-    print("inerter: " + printable(text, longest=1900), file=sys.stderr)
+    print("inerter: " + printable(text, longest=LONGEST_LINE), file=sys.stderr)

@@ -19,7 +19,7 @@ from rich.console import Console
 from discover.document import json_text
 from discover.report.folder import check_replaceable, write_folder
 from discover.report.lock import folder_lock
-from models.checks import InputError, InputErrors
+from models.checks import LONGEST_LINE, InputError, InputErrors, printable
 
 if TYPE_CHECKING:
     from discover.records import Campaign
@@ -170,7 +170,7 @@ def deliver(
         typer.echo(text, nl=False)
         return
     for line in summary:
-        typer.echo(line)
+        typer.echo(printable(line, longest=LONGEST_LINE))
     last = written / ("report.html" if "report.html" in files else name)
     typer.echo(f"{'Report' if last.name == 'report.html' else 'Document'}: {shown_path(last)}")
 

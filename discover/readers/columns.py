@@ -328,7 +328,8 @@ def _calibrations(
     for quantity, index in found.items():
         own, unit = stated_unit(source, index), chosen[quantity]
         if own is not None and not measures(own, QUANTITIES[quantity]):
-            told.append(f"one {own} of {source.headers[index]!r} is taken as {unit}, by [units]")
+            header = shown(source.headers[index])
+            told.append(f"one {own} of {header} is taken as {unit}, by [units]")
     return told
 
 

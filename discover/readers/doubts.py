@@ -76,7 +76,7 @@ def _of_changes(tables: Sequence[tuple[Source, TableGuess]]) -> Iterator[Doubt]:
         usual = names.most_common(1)[0][0] if names else ""
         for source, guess in own:
             name = split_header(guess.header)[0]
-            if name != usual and _has(source, quantity, usual):
+            if name != usual and _has_another(source, guess, usual):
                 why = (
                     f"{printable(guess.header)} is taken in {source.name}, which has"
                     f" {printable(usual)} too, as {names[usual]} of {len(own)} have it"
@@ -85,8 +85,10 @@ def _of_changes(tables: Sequence[tuple[Source, TableGuess]]) -> Iterator[Doubt]:
                 break
 
 
-def _has(source: Source, quantity: str, header: str) -> bool:
+def _has_another(source: Source, guess: Guess, header: str) -> bool:
+    """Tell whether a header names a column that is not the guessed one."""
     try:
-        return find_column(source, quantity, header) is not None
-    except InputError:
+        index = find_column(source, guess.quantity, header)
+    except InputError:  # it names several
         return True
+    return index is not None and source.headers[index] != guess.header

@@ -11,7 +11,7 @@ from discover.readers.columns import QUANTITIES, split_header, stated_unit
 from discover.readers.names import CANONICAL, LETTER, WORD, name_score, of_command
 from discover.readers.source import Source
 from discover.readers.units import measures, to_si, weight_unit
-from models.checks import Array, InputError
+from models.checks import Array, InputError, shown
 
 SURE, LIKELY, UNSURE = "sure", "likely", "unsure"
 _GUESSED = ("time", "force", "displacement", "velocity", "acceleration", "temperature")
@@ -278,6 +278,6 @@ def listed(table: TableGuess) -> Iterator[str]:
     for guess in table.columns.values():
         stated = guess.unit_by and f" ({guess.unit_by})"
         yield (
-            f"{guess.quantity} is column {guess.header!r} ({guess.sure}: {guess.why}), in"
+            f"{guess.quantity} is column {shown(guess.header)} ({guess.sure}: {guess.why}), in"
             f" {guess.unit}{stated}"
         )

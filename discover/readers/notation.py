@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from models.checks import InputError
+from models.checks import InputError, shown
 
 _MARKS = (".", ",")
 _OTHER = {".": ",", ",": "."}
@@ -145,7 +145,7 @@ def thousands_note(header: str, notation: Notation) -> str:
     """
     plain = notation.example.replace(notation.thousands, "").replace(notation.decimal, ".")
     return (
-        f"column {header!r} has thousands separators: {notation.example!r} is read as"
+        f"column {shown(header)} has thousands separators: {notation.example!r} is read as"
         f" {float(plain):.12g}"
     )
 

@@ -20,7 +20,9 @@ STROKE = 8.0 * np.sin(2 * np.pi * 1.5 * TIME)  # mm
 LOAD = 0.6 * np.cos(2 * np.pi * 1.5 * TIME)  # kN
 
 
-def tdms(tests: dict[str, float], *, waveform: bool = True) -> bytes:
+def tdms(
+    tests: dict[str, float], *, waveform: bool = True, force: str = "Dev1/ai0"
+) -> bytes:
     """A TDMS file of one group a test; each is the test above times a factor."""
     buffer = io.BytesIO()
     with TdmsWriter(buffer) as writer:
@@ -35,7 +37,7 @@ def tdms(tests: dict[str, float], *, waveform: bool = True) -> bytes:
                 ChannelObject(group, "LVDT", factor * STROKE, {"unit_string": "mm", **own})
             )
             objects.append(
-                ChannelObject(group, "Dev1/ai0", factor * LOAD, {"unit_string": "kN", **own})
+                ChannelObject(group, force, factor * LOAD, {"unit_string": "kN", **own})
             )
         writer.write_segment(objects)
     return buffer.getvalue()
