@@ -86,15 +86,14 @@ def check_replaceable(path: str | Path, *, fresh: bool = False) -> None:
             raise InputError(
                 "output", expected="in a writable folder", found=str(parent), where=where
             )
+        _make_one(target, parent)
         return
     if not target.is_dir():
         raise InputError("output", expected="a folder", found="a file", where=where)
     if not os.access(target, os.W_OK | os.X_OK):
         raise InputError("output", expected="writable", found="a folder that is not", where=where)
     found = {n for n in _content(target) if not n.startswith(f"{_PART}-")}
-    if not found:
-        return
-    if fresh:
+    if fresh and found:
         raise InputError(
             "output",
             expected="a new or empty folder",
@@ -111,6 +110,20 @@ def check_replaceable(path: str | Path, *, fresh: bool = False) -> None:
             found=f"one that also holds {sorted(foreign)[0]}",
             where=where,
         )
+    _make_one(target, target if _in_place(target) else target.parent)
+
+
+def _make_one(target: Path, parent: Path) -> None:
+    """Make a folder where that of the results will be made, and take it away again.
+
+    A file system that is read-only or full may not say so by its permissions.
+    """
+    prefix = f"{_PART}-" if parent == target else f".{target.name}-part-"
+    try:
+        with without_signals():
+            os.rmdir(tempfile.mkdtemp(prefix=prefix, dir=parent))
+    except OSError as error:
+        raise _unwritable(target, error) from None
 
 
 def _target(path: str | Path) -> Path:

@@ -108,6 +108,13 @@ def test_a_read_only_folder_is_refused_before_any_work(
         check_replaceable(tmp_path / "out")
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="only Linux has such a folder")
+def test_a_place_that_holds_no_folders_is_refused_before_any_work() -> None:
+    """To the superuser its permissions say that it may be written to."""
+    with pytest.raises(InputError, match="output must be"):
+        check_replaceable("/proc/inerter")
+
+
 def test_what_a_killed_run_left_is_brought_back_and_cleared(tmp_path: Path) -> None:
     """Killed between the two renames of a system without an exchange."""
     write_folder(tmp_path / "out", {"a": "earlier"})
