@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +20,8 @@ from models.checks import InputError
 _MAGIC = b"\x89HDF\r\n\x1a\n"
 _DEEPEST = 16  # groups in each other
 _UNIT_NAMES = ("units", "unit", "Units", "Unit", "UNIT", "unit_string")
+_NAMES = re.compile("name|column|channel|label|header|field|signal", re.IGNORECASE)
+"""What an attribute is called that lists the columns of a matrix."""
 
 
 def is_hdf5(data: bytes) -> bool:
@@ -32,8 +35,9 @@ def open_hdf5(data: bytes | Path, name: str, *, joint: str = "/") -> Book:
     Of a path, long vectors are read when they are asked for, whole or in pieces.
 
     An attribute ``units`` of a data set is its unit; ``scale_factor``, ``add_offset`` and
-    ``_FillValue`` say what its counts stand for. A scalar or an attribute may state the sampling
-    rate. What lies in other files is not followed.
+    ``_FillValue`` say what its counts stand for; one as ``columns`` lists the names of a matrix's
+    columns. A scalar or an attribute may state the sampling rate. What lies in other files is not
+    followed.
 
     Raises
     ------
@@ -108,6 +112,12 @@ class _Walk:
         values = item[()]
         if isinstance(values, np.ndarray) and values.dtype.kind in "iuf":
             values = _unpacked(values, _packing(item))
+            if names := _column_names(item):
+                columns = values.T if len(names) == values.shape[1] else values
+                units = _units(item, len(names))
+                for header, column, unit in zip(names, columns, units, strict=True):
+                    yield Leaf((*path, header), column, unit=unit, step=step)
+                return
         yield Leaf(path, values, unit=_unit(item), step=step)
 
     def _step(self, item: Any) -> float | None:
@@ -177,11 +187,28 @@ def _unit(item: Any) -> str:
 
 def _units(item: Any, count: int) -> list[str]:
     """Return the units of a table's fields, where an attribute lists them."""
-    for key in _UNIT_NAMES:
-        listed = [
-            own.decode("utf-8", "replace") if isinstance(own, bytes) else str(own)
-            for own in np.ravel(item.attrs.get(key, ()))
-        ]
-        if len(listed) == count:
-            return [own.strip() for own in listed]
-    return [""] * count
+    lists = (_texts(item.attrs.get(key, ())) for key in _UNIT_NAMES)
+    return next((listed for listed in lists if len(listed) == count), [""] * count)
+
+
+def _column_names(item: Any) -> list[str]:
+    """Return the names of a matrix's columns or rows, where an attribute lists them; else none."""
+    if item.ndim != 2:
+        return []
+    for key, value in item.attrs.items():
+        if _NAMES.search(key) and not key.startswith("DIMENSION_"):  # those name the two axes
+            listed = _texts(value)
+            if len(listed) in item.shape and len(set(listed)) == len(listed) > 1 and all(listed):
+                return listed
+    return []
+
+
+def _texts(value: Any) -> list[str]:
+    """Return an attribute's list of texts; nothing of any other attribute."""
+    listed = np.ravel(value)
+    if listed.dtype.kind not in "OSU":
+        return []
+    return [
+        own.decode("utf-8", "replace").strip() if isinstance(own, bytes) else str(own).strip()
+        for own in listed
+    ]

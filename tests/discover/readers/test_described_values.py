@@ -56,6 +56,18 @@ def test_counts_of_netcdf_stand_for_values(tmp_path: Path) -> None:
     check(read(tmp_path, "a.h5"))
 
 
+@pytest.mark.parametrize("key", ["columns", "channel_names", "Labels"])
+@pytest.mark.parametrize("rows", [True, False])
+def test_an_attribute_names_the_columns_of_a_matrix(tmp_path: Path, key: str, rows: bool) -> None:
+    matrix = np.column_stack([TIME, STROKE, LOAD])
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        data = file.create_dataset("run/data", data=matrix.T if rows else matrix)
+        data.attrs["DIMENSION_LABELS"] = ["sample", "channel"]
+        data.attrs[key] = ["time", "displacement", "force"]
+        data.attrs["units"] = ["s", "mm", "N"]
+    check(read(tmp_path, "a.h5"))
+
+
 def test_a_fill_value_is_no_value(tmp_path: Path) -> None:
     netcdf(tmp_path / "a.h5", missing=100)
     with pytest.raises(InputError, match=r"row 101: force must be a finite number .* got nan"):
