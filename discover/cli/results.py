@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 from rich.console import Console
 
+from discover.cli import signals
 from discover.document import json_text
 from discover.report.folder import check_replaceable, write_folder
 from discover.report.lock import folder_lock
@@ -125,6 +126,7 @@ def working(text: str) -> Iterator[Callable[[str], None]]:
     callable
         Shows how far the work is, beside `text`.
     """
+    signals.meet()
     with contextlib.ExitStack() as stack:
         status = Console(stderr=True).status(text) if sys.stderr.isatty() else None
         if status is not None:
@@ -136,6 +138,7 @@ def working(text: str) -> Iterator[Callable[[str], None]]:
                 status.update(f"{text}: {so_far}")
 
         yield tell
+    signals.meet()
 
 
 def deliver(
@@ -165,6 +168,7 @@ def deliver(
         Print the document instead, and nothing else.
     """
     text = json_text(document)
+    signals.meet()
     written = write_folder(folder, {name: text, **files})
     if as_json:
         typer.echo(text, nl=False)

@@ -30,6 +30,12 @@ def interrupted() -> bool:
     return _state["interrupted"]
 
 
+def meet() -> None:
+    """Raise an interrupt again that was caught on its way, as by a library that tries an import."""
+    if _state["interrupted"] and not _state["leaving"]:
+        raise KeyboardInterrupt
+
+
 def _interrupt(number: int, frame: object) -> None:
     if not _state["leaving"]:
         _state["interrupted"] = True

@@ -337,6 +337,27 @@ sys.exit(cli.program())
     assert (done.stderr, done.returncode) == ("inerter: interrupted\n", 130)
 
 
+def test_an_interrupt_that_a_library_catches_is_met_before_the_next_step() -> None:
+    program = """
+import signal, sys
+from discover import cli
+from discover.cli.results import working
+
+def loading(arguments=None):
+    try:
+        signal.raise_signal(signal.SIGINT)
+    except:  # as where a library tries an import
+        pass
+    with working("Fitting"):
+        print("lost")
+
+cli.main = loading
+sys.exit(cli.program())
+"""
+    done = ran(program)
+    assert (done.stdout, done.stderr, done.returncode) == ("", "inerter: interrupted\n", 130)
+
+
 @pytest.mark.parametrize("name", ["models.py", "models/__init__.py"])
 def test_a_models_of_the_users_own_is_named_and_not_run(tmp_path: Path, name: str) -> None:
     mine = tmp_path / name
