@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -35,7 +35,8 @@ class RecordKind:
     usable: slice
     """Samples that are steady: start-up and run-down of a sine cut off, whole periods."""
     sine: SineFit | None
-    """Fit of the displacement over the usable samples; None where not a sine or not measured."""
+    """Fit of the displacement over the usable samples, without what it leaves; None where not a
+    sine or not measured."""
     period: float | None
     """s, of a sine or periodic record; None otherwise."""
     cycles: float | None
@@ -123,6 +124,7 @@ def _classified(record: Record) -> RecordKind:
     steady = _steady_sine(record.time, x, power)
     if steady is not None:
         usable, fit = steady
+        fit = replace(fit, residual=fit.residual[:0].copy())  # a kind is kept with its record
         return RecordKind("sine", usable, fit, 1.0 / fit.frequency, fit.cycles, rest)
     repeated = _repetition(x)
     if repeated is not None:

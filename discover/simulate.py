@@ -258,18 +258,17 @@ def predict_record(observation: Observation, model: Model) -> RecordPrediction:
     if isinstance(model, ForceModel):
         return RecordPrediction(accuracy(observation, model), (0,))
     chosen = [_band(model, w.speed, w.frequency) for w in observation.windows]
+    if len(set(chosen)) == 1:
+        return RecordPrediction(accuracy(observation, model.bands[chosen[0]].model), (chosen[0],))
     forces = {b: force_at_samples(observation, model.bands[b].model) for b in set(chosen)}
-    if len(forces) == 1:
-        force = forces[chosen[0]]
-    else:
-        # Windows follow each other; their shares of the duration say where each begins.
-        ends = np.cumsum([w.share for w in observation.windows])
-        size = observation.measured.size
-        at = np.searchsorted(ends[:-1] / ends[-1], (np.arange(size) + 0.5) / size)
-        bands = np.array(chosen)[at]
-        force = np.zeros(size)
-        for band, values in forces.items():
-            force[bands == band] = values[bands == band]
+    # Windows follow each other; their shares of the duration say where each begins.
+    ends = np.cumsum([w.share for w in observation.windows])
+    size = observation.measured.size
+    at = np.searchsorted(ends[:-1] / ends[-1], (np.arange(size) + 0.5) / size)
+    bands = np.array(chosen)[at]
+    force = np.zeros(size)
+    for band, values in forces.items():
+        force[bands == band] = values[bands == band]
     return RecordPrediction(compared_with(observation, force), tuple(sorted(forces)))
 
 

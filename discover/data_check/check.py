@@ -30,7 +30,7 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
     seed : int
         Kept in the document. Nothing in a check is random.
     jobs : int
-        Threads for reading the records.
+        Processes that observe the records.
 
     Returns
     -------

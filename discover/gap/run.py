@@ -64,7 +64,7 @@ def close_gap(
     seed : int
         Of the draws of records by which effects are compared that leave more than noise.
     jobs : int
-        Threads for reading the records.
+        Processes that observe the records.
     tell : callable, optional
         Is told in words what each round added: a search takes seconds to minutes.
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -180,7 +181,36 @@ def _window(
     )
 
 
-def observe_band(record: Record, usable: slice, kind: str) -> Observation:
+@dataclass(frozen=True)
+class BandFound:
+    """What the samples of a record that does not repeat tell of band and noise."""
+
+    cutoff: float
+    """Hz, the band's end."""
+    displacement_noise: float
+    """m, root mean square."""
+    noise: NoiseSpectrum
+    """Of the force."""
+
+
+def find_band(record: Record, usable: slice) -> BandFound:
+    """Return band and noise of a record; arguments and errors as of `observe_band`."""
+    step, (time, x, force) = record.step, _columns(record, usable)
+    spectrum = power_density(x - x.mean(), step)
+    cutoff, follows = np.inf, _cutoff(*spectrum)
+    while follows < EDGE * cutoff:  # each time by a tenth at least, and never below a few lines
+        cutoff = follows
+        displacement_noise = _white_noise(*spectrum, cutoff)
+        motion = _band_motion(record, usable, x, cutoff, displacement_noise)
+        inner = _inner(_pieces(time.size, cutoff * step))
+        found = band_noise(motion, x, force, step, cutoff, inner)
+        follows = found.follows
+    return BandFound(cutoff, displacement_noise, found.spectrum)
+
+
+def observe_band(
+    record: Record, usable: slice, kind: str, found: BandFound | None = None
+) -> Observation:
     """Return the observation of a sweep, a random record, an earthquake or a trajectory.
 
     Parameters
@@ -191,27 +221,20 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         Samples to use.
     kind : str
         Recorded in the result.
+    found : BandFound, optional
+        Its band and noise; found here where not given.
 
     Returns
     -------
     Observation
         With up to sixteen windows.
     """
-    if record.displacement is None:
-        raise InputError("displacement", expected="given", where=record.file)
-    step = record.step
-    time, x, force = record.time[usable], record.displacement[usable], record.force[usable]
-    spectrum = power_density(x - x.mean(), step)
-    cutoff, follows = np.inf, _cutoff(*spectrum)
-    while follows < EDGE * cutoff:  # each time by a tenth at least, and never below a few lines
-        cutoff = follows
-        displacement_noise = _white_noise(*spectrum, cutoff)
-        motion = _band_motion(record, usable, x, cutoff, displacement_noise)
-        pieces = _pieces(time.size, cutoff * step)
-        inner = slice(pieces[0][0], pieces[-1][0] + pieces[-1][1].size)
-        found = band_noise(motion, x, force, step, cutoff, inner)
-        follows = found.follows
-    noise = found.spectrum
+    step, (time, x, force) = record.step, _columns(record, usable)
+    found = find_band(record, usable) if found is None else found
+    cutoff, noise = found.cutoff, found.noise
+    motion = _band_motion(record, usable, x, cutoff, found.displacement_noise)
+    pieces = _pieces(time.size, cutoff * step)
+    inner = _inner(pieces)
     mass = sum(float(np.sum(taper**2)) for _, taper in pieces)
     windows = [
         _window(piece, motion, x, force, noise, step=step, cutoff=cutoff, mass=mass)
@@ -232,8 +255,20 @@ def observe_band(record: Record, usable: slice, kind: str) -> Observation:
         time=time[shown],
         measured=at_samples(force),
         at_samples=at_samples,
-        displacement_noise=displacement_noise,
+        displacement_noise=found.displacement_noise,
         force_noise=float(np.sqrt(noise.power)),
         cutoff=cutoff,
         usable=usable,
     )
+
+
+def _columns(record: Record, usable: slice) -> tuple[Array, Array, Array]:
+    """Return time, displacement and force at the usable samples."""
+    if record.displacement is None:
+        raise InputError("displacement", expected="given", where=record.file)
+    return record.time[usable], record.displacement[usable], record.force[usable]
+
+
+def _inner(pieces: Sequence[tuple[int, Array]]) -> slice:
+    """Return the samples that windows, each a start and a taper, cover."""
+    return slice(pieces[0][0], pieces[-1][0] + pieces[-1][1].size)

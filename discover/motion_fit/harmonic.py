@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from discover.motion_fit.cycle_sums import PHASES, STRETCHES, CycleSums, cycle_sums
-from discover.motion_fit.harmonic_lines import harmonic_lines, lines_of
+from discover.motion_fit.harmonic_lines import HarmonicLines, harmonic_lines, lines_of
 from discover.motion_fit.noise import density_between_lines
 from discover.motion_fit.noise_spectrum import noise_spectrum
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
+from discover.motion_fit.sine_found import SineFound
 from discover.records import Record
 from discover.sine_fit import Harmonics, LongFit, Moments, SineFit, harmonic_series, moments
 from models.checks import Array, InputError
@@ -111,11 +114,21 @@ def observe_sine(
     InputError
         Where fewer than one and a half cycles are usable, or the sampling resolves no harmonic.
     """
+    return observed(record, find_sine(record, usable, frequency, sine))
+
+
+def find_sine(
+    record: Record,
+    usable: slice,
+    frequency: float,
+    sine: SineFit | LongFit | None,
+) -> SineFound:
+    """Return what the samples of a sine test tell; arguments and errors as of `observe_sine`."""
     time, force = record.time[usable], record.force[usable]
     displacement = None if sine is None else sine.coefficients
-    duration = float(time[-1] - time[0]) * time.size / (time.size - 1)
+    duration = _duration(time)
     count = _resolved_harmonics(time.size, duration * frequency, record.file)
-    middle = float(time.mean()) if duration * frequency > 2.0 else None
+    middle = _middle(time, frequency)
     every = moments(time)
     clear = moving(every, frequency, displacement)
     at = every.of(clear)
@@ -140,10 +153,44 @@ def observe_sine(
     fitted_phase = displacement is None
     if displacement is None:
         displacement = _fit_phase(record, lines, fit.lines, at, frequency, variance)
-    window = _window(
-        displacement, frequency, lines, variance, fit.lines,
-        rest=float(residual @ residual / time.size), noise_power=noise**2,
-    )  # fmt: skip
+    return SineFound(
+        usable=usable,
+        frequency=frequency,
+        displacement=displacement,
+        force=lines * _turn(displacement, count),
+        variance=variance,
+        rest=float(residual @ residual / time.size),
+        displacement_noise=0.0 if sine is None else sine.noise_rms,
+        motion_error=np.zeros(0) if sine is None else sine.std_errors,
+        force_noise=noise,
+        noise=spectrum,
+        phase_fitted=fitted_phase,
+        drift=0.0 if middle is None else float(solution[-1]),
+        sums=_sums(time, force, frequency),
+    )
+
+
+def observed(record: Record, found: SineFound) -> Observation:
+    """Return the observation of a sine test at the samples that are held of it."""
+    time, force = record.time[found.usable], record.force[found.usable]
+    frequency, displacement = found.frequency, found.displacement
+    every = moments(time)
+    clear = moving(every, frequency, None if found.phase_fitted else displacement)
+    at = every.of(clear)
+    amplitude, count = float(abs(displacement[1])), found.force.size - 1
+    window = Window(
+        omega=2.0 * np.pi * (frequency * np.arange(count + 1, dtype=np.float64)),
+        force=found.force,
+        variance=found.variance,
+        project=_Projection(
+            at, frequency, count, _middle(time, frequency), _turn(displacement, count)
+        ),
+        frequency=frequency,
+        amplitude=amplitude,
+        speed=2.0 * np.pi * frequency * amplitude,
+        rest=found.rest,
+        noise_power=found.force_noise**2,
+    )
     return Observation(
         record=record,
         kind="sine",
@@ -151,45 +198,51 @@ def observe_sine(
         cycle=harmonic_motion(displacement, frequency, samples=GRID),
         at=lambda time: _motion_at(moments(time), frequency, displacement),
         windows=(window,),
-        time=time,
-        measured=force,
+        time=at.time,
+        measured=force[clear],
         at_samples=lambda column: column,
-        displacement_noise=0.0 if sine is None else sine.noise_rms,
-        motion_error=np.zeros(0) if sine is None else sine.std_errors,
-        force_noise=noise,
-        noise=spectrum,
+        displacement_noise=found.displacement_noise,
+        motion_error=found.motion_error,
+        force_noise=found.force_noise,
+        noise=found.noise,
         cutoff=None,
-        phase_fitted=fitted_phase,
-        drift=0.0 if middle is None else float(solution[-1]),
-        usable=usable,
-        sums=_sums(time, force, frequency),
+        phase_fitted=found.phase_fitted,
+        drift=found.drift,
+        usable=found.usable,
+        sums=found.sums,
     )
 
 
-def _window(
-    displacement: Lines,
-    frequency: float,
-    force: Lines,
-    variance: Array,
-    project: Callable[[Array], Lines],
-    *,
-    rest: float,
-    noise_power: float,
-) -> Window:
-    """Return the lines with their phases counted from the motion's own."""
-    turn = np.exp(-1j * np.arange(force.size) * velocity_phase(displacement))
-    amplitude = float(abs(displacement[1]))
-    return Window(
-        omega=2.0 * np.pi * (frequency * np.arange(force.size, dtype=np.float64)),
-        force=force * turn,
-        variance=variance,
-        project=lambda columns: project(columns) * turn,
-        frequency=frequency,
-        amplitude=amplitude,
-        speed=2.0 * np.pi * frequency * amplitude,
-        rest=rest,
-        noise_power=noise_power,
-    )
+def _duration(time: Array) -> float:
+    return float(time[-1] - time[0]) * time.size / (time.size - 1)
+
+
+def _middle(time: Array, frequency: float) -> float | None:
+    """Return where a drift beside the harmonics is zero, s; None where too few cycles show it."""
+    return float(time.mean()) if _duration(time) * frequency > 2.0 else None
+
+
+def _turn(displacement: Lines, count: int) -> Lines:
+    """Return what counts the phases of the mean and `count` harmonics from the motion's own."""
+    return np.asarray(np.exp(-1j * np.arange(count + 1) * velocity_phase(displacement)))
+
+
+@dataclass(frozen=True)
+class _Projection:
+    """Maps columns at samples to their lines, with phases counted from the motion's own."""
+
+    at: Moments
+    frequency: float
+    count: int
+    middle: float | None
+    turn: Lines
+
+    def __call__(self, columns: Array) -> Lines:
+        return np.asarray(self._fit.lines(columns) * self.turn)
+
+    @cached_property
+    def _fit(self) -> HarmonicLines:
+        return harmonic_lines(self.at, self.frequency, self.count, middle=self.middle)
 
 
 def _sums(time: Array, force: Array, frequency: float) -> CycleSums | None:

@@ -8,18 +8,18 @@ from dataclasses import replace
 import numpy as np
 
 from discover.motion_fit.cycle_sums import cycle_sums
-from discover.motion_fit.harmonic import RELATIVE_FLOOR, moving, observe_sine, velocity_phase
+from discover.motion_fit.harmonic import RELATIVE_FLOOR, find_sine, moving, velocity_phase
 from discover.motion_fit.harmonic_lines import LineSums, lines_of
-from discover.motion_fit.observation import Observation
+from discover.motion_fit.sine_found import SineFound
 from discover.records import LongRecord, Piece, Record
-from discover.sine_fit import SineFit, fit_long_sine, moments
+from discover.sine_fit import LongFit, SineFit, fit_long_sine, moments
 from models.checks import Array, InputError
 
 
-def observe_long_sine(
+def find_long_sine(
     record: Record, long: LongRecord, usable: slice, head: SineFit
-) -> Observation:
-    """Return the observation of a sine test that is read in pieces.
+) -> SineFound:
+    """Return what the samples of a sine test that is read in pieces tell.
 
     Frequency, motion, lines and sums are of all samples from the first steady one on. The noise's
     spectrum, and what is shown, are of the samples in memory.
@@ -38,7 +38,7 @@ def observe_long_sine(
     Raises
     ------
     InputError
-        As `observe_sine`, and where the motion is not the same throughout.
+        As `find_sine`, and where the motion is not the same throughout.
     """
     if record.displacement is None:
         raise InputError("displacement", expected="given", found="none", where=record.file)
@@ -51,10 +51,8 @@ def observe_long_sine(
         lambda: ((p.time, p.displacement) for p in steady()), long.samples - start, head,
         record.time[usable], record.displacement[usable], where=record.file,
     )  # fmt: skip
-    first_part = observe_sine(record, usable, fit.frequency, fit)
-    (window,) = first_part.windows
-
-    count = window.omega.size - 1
+    first_part = find_sine(record, usable, fit.frequency, fit)
+    count = first_part.force.size - 1
     fitted = LineSums(
         fit.frequency, count, middle=0.5 * (fit.first + float(fit.last[-1]))
     )
@@ -66,21 +64,28 @@ def observe_long_sine(
             fitted.add(time, force)
             yield time, force
 
-    ends = fit.last[moving(moments(fit.last), fit.frequency, fit.coefficients)]
+    ends = _clear(fit.last, fit)
     last = float(ends[-1] if ends.size else fit.last[-1])
-    sums = cycle_sums(clear(), fit.frequency, float(first_part.time[0]), last)
+    held = _clear(record.time[usable], fit)
+    sums = cycle_sums(clear(), fit.frequency, float(held[0]), last)
     solution, left = fitted.solve()
     (lines,) = lines_of(solution[None], count)
     turn = np.exp(-1j * np.arange(count + 1) * velocity_phase(fit.coefficients))
-    held = float(first_part.time[-1] - first_part.time[0])
     floor = RELATIVE_FLOOR**2 * float(np.sum(np.abs(lines) ** 2))
-    window = replace(
-        window,
+    span = float(held[-1] - held[0])
+    return replace(
+        first_part,
         force=lines * turn,
-        variance=np.maximum(window.variance * held / (sums.last - sums.first), floor),
+        variance=np.maximum(first_part.variance * span / (sums.last - sums.first), floor),
         rest=left / sums.samples,
+        sums=sums,
+        drift=float(solution[-1]),
     )
-    return replace(first_part, windows=(window,), sums=sums, drift=float(solution[-1]))
+
+
+def _clear(time: Array, fit: LongFit) -> Array:
+    """Return the times that lie clear of the reversals of motion."""
+    return time[moving(moments(time), fit.frequency, fit.coefficients)]
 
 
 def _from_sample(long: LongRecord, start: int) -> Iterator[Piece]:

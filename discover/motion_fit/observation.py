@@ -112,13 +112,18 @@ class Observation:
     """(H + 1,) m: standard error of the real (and of the imaginary) part of each phasor of a sine
     test's displacement; none where it is not measured."""
     sums: CycleSums | None = None
-    """Of all usable samples of a sine test that has many; of a long one `time`, `motion` and
-    `measured` hold the first."""
+    """Of all usable samples of a sine test that has many; where they are not all held, `time`,
+    `motion` and `measured` hold the first."""
 
     @property
     def samples(self) -> int:
         """Number of usable samples, in memory or not."""
         return self.measured.size if self.sums is None else self.sums.samples
+
+    @property
+    def whole(self) -> bool:
+        """True where `time` and `measured` hold all usable samples."""
+        return self.sums is None or self.sums.samples <= self.measured.size
 
     @property
     def duration(self) -> float:

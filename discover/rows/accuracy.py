@@ -61,26 +61,24 @@ class Accuracy:
 def accuracy(observation: Observation, model: ForceModel) -> Accuracy:
     """Return how a model's force compares with the measured one, sample by sample.
 
-    Of a record that is read in pieces the powers are of all samples, the force is at the first.
+    Of a record of which the first samples are held the powers are of all, the force is at these.
     """
     here = compared_with(observation, force_at_samples(observation, model))
-    if observation.record.long is None or observation.sums is None:
+    if observation.whole:
         return here
-    return replace(
-        here,
-        error_power=misfit_power(observation, model),
-        force_power=observation.sums.power / observation.sums.samples,
-    )
+    return replace(here, error_power=misfit_power(observation, model))
 
 
 def compared_with(observation: Observation, force: Array) -> Accuracy:
     """Return how a force at the usable samples (M,) compares with the measured one, N."""
     noise = sum(w.share * w.noise_power for w in observation.windows)
     left = observation.measured - force
-    return Accuracy(
-        observation, force, _power(observation, left), _power(observation, observation.measured),
-        float(noise),
-    )  # fmt: skip
+    sums = observation.sums
+    if observation.whole or sums is None:
+        measured = _power(observation, observation.measured)
+    else:
+        measured = sums.power / sums.samples
+    return Accuracy(observation, force, _power(observation, left), measured, float(noise))
 
 
 def _power(observation: Observation, signal: Array) -> float:

@@ -32,4 +32,4 @@ class StudyOptions:
     seed: int = 0
     """Of everything random."""
     jobs: int = 1
-    """Processes."""
+    """Processes that observe the records."""
