@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from discover.record_checks import RecordCheck
+from discover.record_checks import RecordCheck, force_deviation
 from discover.records import Campaign, Finding, Record
 
 FACTOR = 100.0
@@ -36,7 +36,7 @@ def size_findings(campaign: Campaign, checks: Sequence[RecordCheck]) -> list[Fin
     if len(campaign.records) < 2:
         return []
     amplitudes = [_amplitude(r, c) for r, c in zip(campaign.records, checks, strict=True)]
-    forces: list[float | None] = [_deviation(r.force) for r in campaign.records]
+    forces: list[float | None] = [force_deviation(r) for r in campaign.records]
     omegas = [None if c.frequency_hz is None else 2.0 * math.pi * c.frequency_hz for c in checks]
     per_motion = [
         [
@@ -72,7 +72,7 @@ def _amplitude(record: Record, check: RecordCheck) -> float | None:
         return check.amplitude_m
     if record.displacement is None:
         return None
-    return math.sqrt(2.0) * _deviation(record.displacement)
+    return math.sqrt(2.0) * float(np.std(record.displacement))
 
 
 def _is_still(
@@ -84,10 +84,6 @@ def _is_still(
         if own is None or (own and (not other or own / other > 1.0 / FACTOR)):
             return False
     return True
-
-
-def _deviation(values: np.ndarray) -> float:
-    return float(np.std(values))
 
 
 def _others(values: Sequence[float | None], index: int) -> float | None:

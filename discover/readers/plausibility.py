@@ -11,8 +11,7 @@ import numpy as np
 from discover.readers.columns import QUANTITIES
 from discover.readers.fastest_motion import fastest_motion
 from discover.readers.units import SI_UNITS, to_si
-from discover.record_checks.apparent import apparent
-from discover.record_kind import classify
+from discover.record_checks import apparent_of
 from discover.records import Finding, Record, RigLimits
 from models.checks import InputError
 from models.device import Device
@@ -148,10 +147,15 @@ def _sizes(records: Sequence[Record], *, inertial: bool) -> Sizes | None:
     moving = [r for r in records if r.displacement is not None]
     if not moving:
         return None
-    values = np.array([_of_record(r) for r in moving])
+    values = np.array([sizes_of(r) for r in moving])
     amplitude, frequency, force, step = np.median(values, axis=0)
     inertance = _apparent_inertance(moving) if inertial else None
     return Sizes(amplitude, frequency, force, step, inertance)
+
+
+def sizes_of(record: Record) -> tuple[float, float, float, float]:
+    """Return a record's amplitude, m, fastest motion, Hz, force, N, and step, s: asked once."""
+    return record.once(_of_record)
 
 
 def _of_record(record: Record) -> tuple[float, float, float, float]:
@@ -165,7 +169,7 @@ def _apparent_inertance(records: Sequence[Record]) -> float | None:
     masses = []
     for record in records:
         try:
-            found = apparent(record, classify(record))
+            found = apparent_of(record)
         except InputError:  # what can't be classified is for the checks to say
             continue
         if found is not None and found.mass > 0.0 and found.mass_share > _MUCH_INERTIA:

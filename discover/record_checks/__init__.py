@@ -1,6 +1,7 @@
 """Judging records before anything is fitted: kind, noise, signs, copies."""
 
 from discover.record_checks.apparent import Apparent, apparent
+from discover.record_checks.asked_once import apparent_of, digest_of, force_deviation, work_of
 from discover.record_checks.check import (
     CampaignCheck,
     RecordCheck,
@@ -18,9 +19,13 @@ __all__ = [
     "LoopWork",
     "RecordCheck",
     "apparent",
+    "apparent_of",
     "check_record",
     "check_records",
     "data_errors",
     "differing_records",
+    "digest_of",
+    "force_deviation",
     "loop_work",
+    "work_of",
 ]

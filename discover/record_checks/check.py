@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from discover.motion_fit import Observation
-from discover.record_checks.apparent import apparent
-from discover.record_checks.loop_work import LoopWork, loop_work
+from discover.record_checks.asked_once import apparent_of, digest_of, work_of
 from discover.record_kind import RecordKind, classify
 from discover.records import Campaign, Finding, Record
 from discover.rows import compared_with
@@ -158,7 +156,7 @@ def _of_campaign(campaign: Campaign) -> list[Finding]:
 
 def _signs(records: tuple[Record, ...]) -> list[Finding]:
     """Return findings on records whose force gives energy over closed loops of the motion."""
-    known = [(r, work) for r in records if (work := _work(r)) is not None]
+    known = [(r, work) for r in records if (work := work_of(r)) is not None]
     giving = [r for r, work in known if work.gives]
     if not giving:
         return []
@@ -200,16 +198,9 @@ def _stepped(records: tuple[Record, ...]) -> list[Finding]:
     return found
 
 
-def _work(record: Record) -> LoopWork | None:
-    even = record.even
-    if even.displacement is None:
-        return None
-    return loop_work(even.displacement, even.force)
-
-
 def _inertia(records: Sequence[Record]) -> float:
     """Return how much of the force acts as a mass (positive) or as a spring (negative)."""
-    found = [apparent(r, classify(r)) for r in records]
+    found = [apparent_of(r) for r in records]
     return float(sum(np.sign(a.mass) * a.mass_share**2 for a in found if a is not None))
 
 
@@ -218,10 +209,7 @@ def _copies(records: tuple[Record, ...]) -> list[Finding]:
     findings: list[Finding] = []
     seen: dict[str, Record] = {}
     for record in records:
-        digest = hashlib.sha256(record.force.tobytes())
-        if record.displacement is not None:
-            digest.update(record.displacement.tobytes())
-        first = seen.setdefault(digest.hexdigest(), record)
+        first = seen.setdefault(digest_of(record), record)
         if first is record:
             continue
         if first.held_out != record.held_out:
