@@ -85,6 +85,16 @@ class InputError(ValueError):
         self.found = found
         self.where = where
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return how another process makes the same error."""
+        return _remade, (type(self), self.args), self.__dict__
+
+
+def _remade(kind: type[InputError], args: tuple[str, ...]) -> InputError:
+    error = kind.__new__(kind)
+    error.args = args
+    return error
+
 
 class InputErrors(InputError):
     """Several things that can't be worked on, so that one run tells them all.

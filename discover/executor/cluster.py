@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from threadpoolctl import threadpool_limits
 
@@ -24,6 +24,7 @@ _one_at_a_time = threading.Lock()
 class Cluster:
     """Does the items on a cluster, whose scheduler does those of lost workers again."""
 
+    apart: ClassVar[bool] = True
     client: Any
     """Of `distributed`."""
     watch: Watch

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import ClassVar
 
 from discover.executor.interface import Lost, R, T
 
 
 class Here:
     """Does the items in their order."""
+
+    apart: ClassVar[bool] = False
 
     def finished(
         self, function: Callable[[T], R], items: Sequence[T]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import ClassVar, Protocol, TypeVar
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -23,6 +23,9 @@ class Lost:
 
 class Executor(Protocol):
     """Does the same work on many items."""
+
+    apart: ClassVar[bool]
+    """True where another process does it, to which items travel, and results from it."""
 
     def finished(
         self, function: Callable[[T], R], items: Sequence[T]

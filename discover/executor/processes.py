@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from joblib.externals.loky import ProcessPoolExecutor
 from joblib.externals.loky.process_executor import BrokenProcessPool
@@ -24,6 +24,7 @@ class Processes:
     back, and where a process dies it is known which items it may have been.
     """
 
+    apart: ClassVar[bool] = True
     jobs: int
     """Number of processes."""
 
