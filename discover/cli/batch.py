@@ -15,6 +15,7 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation
+from discover.cli.reading import say
 from discover.cli.results import hold_folder, shown_path
 from models.checks import LONGEST_LINE, InputError, printable
 
@@ -93,7 +94,7 @@ def batch(
     home = out.resolve()
     labels = [one.label for one in listed]
     items = [Item(c.path, c.given, home / c.label, stamp(c, asked), model, seed) for c in listed]
-    with executor(jobs, cluster, tell=_say) as where:
+    with executor(jobs, cluster, tell=say) as where:
         out.mkdir(parents=True, exist_ok=True)
         (out / MARK).touch()
         errors = _work_off(items, labels, where)
@@ -193,11 +194,6 @@ def _progress(count: int, done: int) -> Iterator[Callable[[str], None]]:
         def tell(error: str) -> None:
             bar.advance(task)
             if error:
-                _say(error)
+                say(error)
 
         yield tell
-
-
-def _say(text: str) -> None:
-    """Print a line on stderr, above the bar where one is shown: it takes stderr over."""
-    print("inerter: " + printable(text, longest=LONGEST_LINE), file=sys.stderr)

@@ -50,12 +50,14 @@ def work(item: Item) -> str:
 
 def _worked(item: Item) -> str:
     from discover.document import json_text
+    from discover.executor import executor
     from discover.readers import read_campaign
     from discover.report.folder import write_folder
     from discover.report.study import study_files
     from discover.study import StudyOptions, run_study
 
-    campaign = read_campaign(item.campaign)
+    with executor() as here:
+        campaign = read_campaign(item.campaign, over=here)
     study = run_study(campaign, StudyOptions(seed=item.seed))
     document = study.to_dict()
     command = shlex.join(["inerter", "discover", item.given, "--seed", str(item.seed)])

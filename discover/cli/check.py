@@ -9,6 +9,7 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation
+from discover.cli.reading import read_over
 from discover.cli.results import after_reading, deliver, result_folder, working
 from discover.cli.shipped import shipped_campaign
 
@@ -22,6 +23,7 @@ def check(
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
+    cluster: options.Cluster = None,
 ) -> int:
     """Judge the records, and say what their plan can't tell apart.
 
@@ -31,15 +33,14 @@ def check(
     folder = result_folder("check", source, out)
 
     from discover.data_check import check_campaign
-    from discover.readers import read_campaign
     from discover.readers.left_out import left_out_findings
     from discover.report.check import check_figures, check_lines, check_report
 
+    read = read_over(source, jobs, cluster)
     with working(f"Checking {source}"):
-        read = read_campaign(source)
         measured = replace(read, findings=(*read.findings, *left_out_findings(source)))
         with after_reading(measured):
-            answer = check_campaign(measured, seed=seed, jobs=jobs)
+            answer = check_campaign(measured, seed=seed)
     with working("Drawing"):
         document = answer.to_dict()
         figures = check_figures(document, answer.figure_data)

@@ -10,6 +10,7 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation, to_copy
+from discover.cli.reading import read_over
 from discover.cli.results import after_reading, deliver, result_folder, shown_path, working
 from discover.cli.shipped import HIDDEN, HIDDEN_MODEL, shipped_campaign
 from models.checks import number, one_of
@@ -33,6 +34,7 @@ def discover(
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
+    cluster: options.Cluster = None,
 ) -> int:
     """Find which structure the records support, and where.
 
@@ -52,14 +54,12 @@ def discover(
 
     # Loaded here: --help and complaints about options need no numerics.
     from discover.document import json_text
-    from discover.readers import read_campaign
     from discover.report.study import study_files
     from discover.study import StudyOptions, run_study
     from discover.study.verdict import verdict_lines
     from discover.words import error_lines, warning_lines
 
-    with working(f"Reading {source}"):
-        measured = read_campaign(source)
+    measured = read_over(source, jobs, cluster)
     with working(f"Studying {len(measured.records)} records"), after_reading(measured):
         study = run_study(
             measured,
@@ -72,7 +72,6 @@ def discover(
                 convention=convention,
                 criterion=criterion,
                 seed=seed,
-                jobs=jobs,
             ),
         )
     with working("Drawing"):

@@ -9,6 +9,7 @@ import typer
 
 from discover.cli import options
 from discover.cli.invocation import Invocation
+from discover.cli.reading import read_over
 from discover.cli.results import after_reading, deliver, result_folder, working
 from models.checks import one_of
 
@@ -54,6 +55,7 @@ def gap(
     as_json: options.AsJson = False,
     seed: options.Seed = options.DEFAULT_SEED,
     jobs: options.Jobs = 1,
+    cluster: options.Cluster = None,
 ) -> int:
     """Find what a model lacks, name it, and add it.
 
@@ -71,7 +73,6 @@ def gap(
     from discover.document import json_text
     from discover.gap import term_ids
     from discover.motion_gap import motion_before_and_after, require_system
-    from discover.readers import read_campaign
     from discover.report.gap import gap_files, gap_lines
     from discover.words import warning_lines
     from models.terms import TERMS, own_terms
@@ -83,13 +84,12 @@ def gap(
         one_of("effect", name, sorted(TERMS), where="--effects")
     if model.startswith(FIT):
         term_ids(model)
-    with working(f"Reading {campaign}"):
-        measured = read_campaign(campaign)
+    measured = read_over(campaign, jobs, cluster)
     if on == "motion":
         require_system(measured)
     with working(f"Comparing {len(measured.records)} records") as tell, after_reading(measured):
         document, found = gap_answer(
-            measured, model, fixed=fixed, effects=named, seed=seed, jobs=jobs, tell=tell
+            measured, model, fixed=fixed, effects=named, seed=seed, tell=tell
         )
     if named is not None:
         document["effects"] = list(named)

@@ -73,7 +73,6 @@ def gap_answer(
     fixed: bool = False,
     effects: Sequence[str] | None = None,
     seed: int = 0,
-    jobs: int = 1,
     tell: Callable[[str], None] | None = None,
 ) -> tuple[dict[str, Any], Gap]:
     """Return the document of a gap search, with what to know of the baseline, and its result.
@@ -84,13 +83,13 @@ def gap_answer(
         The records.
     model : str
         As typed after ``--model``.
-    fixed, effects, seed, jobs, tell
+    fixed, effects, seed, tell
         As `discover.gap.close_gap` takes them.
     """
     device = campaign.device
     chosen = model if fitted_first(model, device) else named_model(model, device)
     found = close_gap(
-        campaign, chosen, fixed=fixed, effects=effects, seed=seed, jobs=jobs, tell=tell
+        campaign, chosen, fixed=fixed, effects=effects, seed=seed, tell=tell
     )
     document = found.to_dict()
     document["findings"] += baseline_notes(

@@ -181,7 +181,7 @@ def _found(files: Sequence[Path]) -> tuple[Path, list[str]]:
     """Return the campaign's folder and the files inside it; none of them for a folder."""
     for path in files:
         if not path.is_dir() and not path.is_file():
-            from discover.readers.campaign import kind_of
+            from discover.readers.inside import kind_of
 
             raise InputError(str(path), expected="a folder or a file", found=kind_of(path))
     if len(files) == 1 and files[0].is_dir():

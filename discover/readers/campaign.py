@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import shlex
-import stat
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from discover.readers.choice import chosen_sources, one_table
-from discover.readers.content import content_error
+from discover.executor import Executor
 from discover.readers.draft import Draft, draft_campaign
 from discover.readers.draft_tables import Answers
 from discover.readers.entries import Entry, expanded
-from discover.readers.formats import IN_PIECES, OPENERS, open_book
+from discover.readers.formats import OPENERS
 from discover.readers.guess import listed
-from discover.readers.joined import joined
-from discover.readers.long_record import read_record_of_any_length
+from discover.readers.inside import bytes_of, digest_file, framed, kind_of, path_of
 from discover.readers.plausibility import implausible
-from discover.readers.source import Book
 from discover.readers.tables import (
     read_column_names,
     read_column_units,
@@ -31,6 +27,7 @@ from discover.readers.tables import (
     read_rig,
     read_system,
 )
+from discover.readers.taken import Taken, parted, taken, taken_over
 from discover.records import Campaign, Finding, Record
 from models.checks import InputError, InputErrors, nearest, printable, shown
 
@@ -38,10 +35,14 @@ CAMPAIGN_FILE = "campaign.toml"
 _TABLES = ("title", "device", "columns", "units", "records", "rig", "system")
 _LONGEST_TITLE = 400  # characters
 _MOST_ERRORS = 20  # that are told of one campaign
-_PIECE = 2**20  # bytes
 
 
-def read_campaign(path: str | Path) -> Campaign:
+def read_campaign(
+    path: str | Path,
+    *,
+    over: Executor | None = None,
+    tell: Callable[[str], None] | None = None,
+) -> Campaign:
     """Read a campaign folder, or one file as a campaign of its own, with everything in SI.
 
     Parameters
@@ -49,6 +50,12 @@ def read_campaign(path: str | Path) -> Campaign:
     path : str or Path
         The folder, or its ``campaign.toml``; or a file of records, whose columns and units are
         guessed, with findings that say so.
+    over : Executor, optional
+        Of `discover.executor`: reads the files and finds in each record what verbs ask of its
+        samples. Of a longer sine test the record then holds the first `HELD` samples alone,
+        beside what was found in all.
+    tell : callable, optional
+        Is told how many files an executor has done.
 
     Returns
     -------
@@ -80,7 +87,7 @@ def read_campaign(path: str | Path) -> Campaign:
         title = given.stem
         draft = draft_campaign(given.parent, [given.name], title=title, answers=Answers({}, {}))
         content = draft.toml(marked=False).encode()
-        return _campaign(given.parent, content, str(path), _guesses(draft))
+        return _campaign(given.parent, content, str(path), _guesses(draft), over, tell)
     if not folder.is_dir():
         raise InputError(
             str(path),
@@ -94,8 +101,8 @@ def read_campaign(path: str | Path) -> Campaign:
             found=f"nothing there; `inerter init {shlex.quote(str(folder))}` writes it",
             where=str(folder),
         )
-    content = _bytes_of(folder, CAMPAIGN_FILE, where=str(folder))
-    return _campaign(folder, content, str(path), [])
+    content = bytes_of(folder, CAMPAIGN_FILE, where=str(folder))
+    return _campaign(folder, content, str(path), [], over, tell)
 
 
 def _guesses(draft: Draft) -> list[Finding]:
@@ -114,7 +121,14 @@ def _guesses(draft: Draft) -> list[Finding]:
     return found
 
 
-def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Finding]) -> Campaign:
+def _campaign(
+    folder: Path,
+    content: bytes,
+    source: str,
+    findings: Sequence[Finding],
+    over: Executor | None,
+    tell: Callable[[str], None] | None,
+) -> Campaign:
     """Return the campaign of a folder by the content of its ``campaign.toml``."""
     table = _parse(content)
     _check_keys(table)
@@ -128,13 +142,18 @@ def _campaign(folder: Path, content: bytes, source: str, findings: Sequence[Find
     device = read_device(table["device"]) if "device" in table else None
     rig = read_rig(table["rig"]) if "rig" in table else None
     system = read_system(table["system"]) if "system" in table else None
-    digest = hashlib.sha256(_framed(CAMPAIGN_FILE, content))
     where = f"{CAMPAIGN_FILE} [[records]]"
     entries = list(expanded(read_entries(table.get("records")), folder, where=where))
-    read = _Reading(folder, names, units, digest)
-    for entry in entries:
-        read.take(entry)
+    read = _Reading()
+    asked = parted(
+        entries, folder, names=names, units=units, where=where, inertial=device is not None
+    )
+    for each in taken_over(asked, over, tell) if over else (t for a in asked for t in taken(a)):
+        read.take(each)
     read.finish()
+    digest = hashlib.sha256(framed(CAMPAIGN_FILE, content))
+    for file in dict.fromkeys(file for entry in entries for file in entry.files):
+        digest_file(digest, file, path_of(folder, file, where=where))
     records, findings = read.records, [*findings, *read.findings]
     findings += _guessed_units(units, guessed, read.read_units)
     _check_used(names, entries, records)
@@ -170,52 +189,26 @@ def _guessed_units(
     return [Finding("warning", text)]
 
 
+@dataclass
 class _Reading:
     """The records so far, and what was wrong with those that could not be read."""
 
-    def __init__(
-        self, folder: Path, names: Mapping[str, str], units: Mapping[str, str], digest: Any
-    ) -> None:
-        self.folder = folder
-        self.names = names
-        self.units = units
-        self.digest = digest
-        self.records: list[Record] = []
-        self.findings: list[Finding] = []
-        self.read_units: list[Mapping[str, str | None]] = []
-        self.errors: list[InputError] = []
-        self.hashed: set[str] = set()
-        self.book: Book | None = None
+    records: list[Record] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+    read_units: list[Mapping[str, str | None]] = field(default_factory=list)
+    errors: list[InputError] = field(default_factory=list)
 
-    def take(self, entry: Entry) -> None:
-        """Read an entry's records, or keep what is wrong with it."""
-        try:
-            own = {**self.names, **entry.channel}
-            if entry.beside:
-                tables = [one_table(self._opened(file), entry, own) for file in entry.files]
-                sources = [joined(tables, entry.files, own)]
-            else:
-                sources = chosen_sources(self._opened(entry.file), entry, own)
-        except InputError as error:
-            self.errors.append(error)
-            return
-        for source in sources:
-            part = source.part if entry.part is not None or len(sources) > 1 else ""
-            try:
-                found = read_record_of_any_length(
-                    source, entry, names=own, units={**self.units, **entry.units}, part=part
-                )
-            except InputError as error:
-                self.errors.append(error)
-                continue
-            record, findings, own_units = found
-            if any(record.file == other.file for other in self.records):
-                twice = {"expected": "listed once", "found": "it again", "where": record.file}
-                self.errors.append(InputError("record", **twice))
-                continue
-            self.records.append(record)
-            self.findings.extend(findings)
-            self.read_units.append(own_units)
+    def take(self, each: Taken | InputError) -> None:
+        """Take a record, or keep what is wrong with it."""
+        if isinstance(each, InputError):
+            self.errors.append(each)
+        elif any(each.record.file == other.file for other in self.records):
+            twice = {"expected": "listed once", "found": "it again", "where": each.record.file}
+            self.errors.append(InputError("record", **twice))
+        else:
+            self.records.append(each.record)
+            self.findings.extend(each.findings)
+            self.read_units.append(each.units)
 
     def finish(self) -> None:
         """Raise what is wrong: alone as it is, else one line each."""
@@ -232,27 +225,6 @@ class _Reading:
             + f": mend them, or take their [[records]] out of {CAMPAIGN_FILE}"
         )
         raise InputErrors(told, advice=advice)
-
-    def _opened(self, file: str) -> Book:
-        """Return a file's book; the last one is kept, since records of one file come together."""
-        if self.book is not None and self.book.name == file:
-            return self.book
-        where = f"{CAMPAIGN_FILE} [[records]]"
-        hint = len(self.errors) < _MOST_ERRORS  # which costs a look at all names
-        opener = IN_PIECES.get(Path(file).suffix.lower())
-        if opener is not None:
-            path = _path_of(self.folder, file, where=where, hint=hint)
-            if file not in self.hashed:
-                self.hashed.add(file)
-                _digest_file(self.digest, file, path)
-            self.book = opener(path, file)
-            return self.book
-        data = _bytes_of(self.folder, file, where=where, hint=hint)
-        if file not in self.hashed:
-            self.hashed.add(file)
-            self.digest.update(_framed(file, data))
-        self.book = open_book(data, file, where=where)
-        return self.book
 
 
 def _parse(content: bytes) -> dict[str, Any]:
@@ -273,76 +245,6 @@ def _check_keys(table: Mapping[str, Any]) -> None:
                 found="an unknown key" + nearest(key, _TABLES),
                 where=CAMPAIGN_FILE,
             )
-
-
-def _bytes_of(folder: Path, name: str, *, where: str, hint: bool = True) -> bytes:
-    """Return a file's bytes if it lies inside the campaign folder, symbolic links followed."""
-    target = _path_of(folder, name, where=where, hint=hint)
-    try:
-        return target.read_bytes()
-    except OSError as error:
-        raise _not_read(name, error.strerror or "an unreadable file", where) from None
-
-
-def _path_of(folder: Path, name: str, *, where: str, hint: bool = True) -> Path:
-    """Return a file's path if it lies inside the campaign folder, symbolic links followed."""
-    root = folder.resolve()
-    try:
-        target = (root / name).resolve()
-        inside = target.is_relative_to(root) and not Path(name).is_absolute()
-        if inside and target.is_file():
-            return target
-        found = kind_of(target) if inside else "outside of it"
-        if hint and inside and not target.exists():
-            found += nearest(name, _names(root))
-    except OSError as error:
-        found = error.strerror or "an unreadable file"
-    except (ValueError, RuntimeError) as error:  # a zero byte in the name, a loop of links
-        found = str(error)
-    raise _not_read(name, found, where)
-
-
-def _not_read(name: str, found: str, where: str) -> InputError:
-    return InputError(
-        f"file {shown(name)}", expected="in the campaign folder", found=found, where=where
-    )
-
-
-def kind_of(target: Path, file: str = "a file") -> str:
-    """Return in words what lies at a path."""
-    if not target.exists():
-        return "nothing there"
-    if target.is_file():
-        return file
-    mode = target.stat().st_mode
-    kinds = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"))
-    return next((text for test, text in kinds if test(mode)), "a device")
-
-
-def _names(root: Path) -> tuple[str, ...]:
-    """Return what a folder holds."""
-    with os.scandir(root) as items:
-        return tuple(item.name for item in items)
-
-
-def _framed(name: str, data: bytes) -> bytes:
-    """Return bytes that no other division into files can give."""
-    return _frame(name, len(data)) + data
-
-
-def _frame(name: str, size: int) -> bytes:
-    return f"{name}\0{size}\0".encode()
-
-
-def _digest_file(digest: Any, name: str, path: Path) -> None:
-    """Let a file's framed bytes into a digest, without holding them."""
-    try:
-        with path.open("rb") as file:
-            digest.update(_frame(name, os.fstat(file.fileno()).st_size))
-            while data := file.read(_PIECE):
-                digest.update(data)
-    except OSError as error:
-        raise content_error("readable", error, name) from None
 
 
 def _check_used(
