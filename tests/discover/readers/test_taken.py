@@ -129,6 +129,12 @@ def test_other_processes_give_the_same(folder, here):
     assert check_campaign(there).to_dict() == check_campaign(here).to_dict()
 
 
+@pytest.mark.slow
+def test_records_in_memory_are_observed_by_other_processes_too(folder, whole):
+    there = check_campaign(read_campaign(folder), jobs=2)
+    assert there.to_dict() == check_campaign(whole).to_dict()
+
+
 def test_samples_that_drive_a_carried_system_are_all_held(tmp_path):
     time = np.arange(HELD + 5_000) / RATE
     x = 0.01 * np.sin(10.0 * time)
