@@ -137,7 +137,7 @@ def _unexplained(
     level = whole.at(frequencies)
     target, driving = target / np.sqrt(level), driving / np.sqrt(level)
     size = target.size
-    span = min(max(_SPAN, -(-size // _SPANS)), size)
+    span = _span(size)
     hop = max(span // 3, 1)
     degree = min(_DEGREE, span // (2 * len(driving)) - 1)
     powers = np.linspace(-1.0, 1.0, span) ** np.arange(degree + 1)[:, None]
@@ -152,6 +152,11 @@ def _unexplained(
         own = (lines - some[0]) // hop, lines - first[(lines - some[0]) // hop]
         left[lines], kept[lines] = beside[own], share[own]
     return level * left, np.maximum(kept, _LEAST_KEPT)
+
+
+def _span(size: int) -> int:
+    """Return over how many of so many lines a response is a polynomial."""
+    return min(max(_SPAN, -(-size // _SPANS)), size)
 
 
 def _beside(target: Lines, columns: Lines) -> tuple[Array, Array]:
@@ -181,10 +186,11 @@ def _beside(target: Lines, columns: Lines) -> tuple[Array, Array]:
 def _is_more_than_chance(level: Array, less: Array, share: Array) -> bool:
     """Tell whether noise at a level `less` at each line is more likely than at `level`.
 
-    By the Bayesian information criterion: what leaves it spends what it does not keep of the noise.
+    By the Bayesian information criterion: what leaves it spends what it does not keep of the noise,
+    and what it spends rests on the lines around alone.
     """
     gain = float(np.sum(np.log(level / less)))
-    return gain > float(np.sum(1.0 - share)) * float(np.log(2.0 * level.size))
+    return gain > float(np.sum(1.0 - share)) * float(np.log(2.0 * _span(level.size)))
 
 
 def _explained(lines: Lines, target: Lines, frequencies: Array) -> tuple[Array, Array, Array]:
