@@ -157,6 +157,18 @@ class BandSearch:
         whole = undivided(len(self.space.sheet.units))
         return self._banded(whole, None, np.zeros((1, 1), dtype=int), start)
 
+    def unaided(self, now: Banded) -> Banded:
+        """Return a division, its structures weighed where nothing is left to a remainder.
+
+        A remainder as large as the force may stand for a whole law, beside which no structure is
+        more probable than another.
+        """
+        start = np.array(now.variants)
+        answers = [self.one(place, now.shares, start)[2] for place in now.place.unaided]
+        by_variant = max(answers, key=lambda a: float(a.value[0])).by_variant[0]
+        variants = tuple(self.of_best_core(own) for own in by_variant)
+        return replace(now, by_variant=by_variant, variants=variants)
+
     def divided_again(self, now: Banded, *, asked: bool) -> Banded | None:
         """Return the best division with one band more; a gradual one only if it leaves but noise.
 

@@ -52,18 +52,20 @@ def _names(way: Found) -> set[str]:
 
 
 def _starts(now: Found) -> Iterator[Found]:
-    """Yield what terms join: the bands as they are found, one band, and one of each other family.
+    """Yield what terms join: the bands as they are found, one band, and one of each family.
 
-    What a device has besides, a delay say, may be what makes the wrong family more probable.
+    What a device has besides, a delay say, may be what makes the wrong family more probable, or a
+    remainder that stands for all of it. Of each family it is what explains most by itself.
     """
     yield now
     if now.device.bands in (None, 1):
         device, banded = replace(now.device, bands=1), now.fewer[0]
         one = replace(now, device=device, banded=banded, fewer=(banded,))
         yield one
-        for other in sorted({family_of(ids_of(v)) for v in one.variants} - {_family(one)}):
-            device = replace(one.device, family=other)
-            own = held(device, now.search, banded)
+        unaided = now.search.unaided(banded)
+        for family in sorted({family_of(ids_of(v)) for v in one.variants}):
+            device = replace(one.device, family=family)
+            own = held(device, now.search, unaided)
             yield replace(one, device=device, banded=own, fewer=(own,))
 
 
@@ -98,8 +100,3 @@ def _is_better(now: Found, was: Found) -> bool:
     if now.quiet or was.quiet:
         return now.value > was.value
     return predicts_better(was.assessed, now.assessed)
-
-
-def _family(way: Found) -> str:
-    """Return the family of the structure in the lowest band."""
-    return family_of(ids_of(way.variants[way.banded.variants[0]]))

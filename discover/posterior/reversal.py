@@ -99,12 +99,12 @@ def with_few_curves(
     """Return friction by few curves, and the model with its numbers fitted beside these.
 
     Its terms are those of `predicting`, friction whole at its place: what `Reversal.terms` add up
-    to. A model that has to predict has few curves, so its numbers are the best beside these; where
-    nothing but noise is left, those beside the whole curve are.
+    to. A model that is stated has few curves, so its numbers are the best beside these. How surely
+    friction is known the whole curve tells, where nothing is left to a remainder.
     """
     found = reversal_of(assessor, assessed, predicting)
     model, space = predicting.model, predicting.space
-    if found is None or predicting is assessed:
+    if found is None:
         return found, model
     name = found.name
     at = next(i for i, p in enumerate(model.terms) if p.fitted.id == name)
@@ -118,7 +118,9 @@ def with_few_curves(
     best = fitted(space, assessor.evaluator, begun, sizes, None)
     parts = [best.model.terms[i].fitted for i in given]
     sliding = [i for i, t in zip(given, parts, strict=True) if t.id == name]
-    surely = _deviations(assessed, best, sliding, set(given) - set(sliding))
+    surely = None
+    if predicting is not assessed:
+        surely = _deviations(assessed, best, sliding, set(given) - set(sliding))
     least = _NOTHING * sum(t.coefficient for t in parts)
     kept = tuple(t for t in parts if t.coefficient > least) or (parts[0],)
     own = FittedTerm(name, replace(found, terms=kept).sliding, whole.fitted.shape)

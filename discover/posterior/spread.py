@@ -19,14 +19,22 @@ _LEAST = 0.01  # of the posterior, from which sizes count
 
 @dataclass(frozen=True)
 class Spread:
-    """The posterior of a model's numbers, as a normal one."""
+    """The posterior of a model's numbers.
+
+    What predicts best and what is most probable beside a remainder differ as far as the remainder
+    stands for a part of a term. The number is anywhere between the two.
+    """
 
     numbers: tuple[Number, ...]
     """P of them."""
     mean: Array
-    """(P,)."""
+    """(P,) that predict best."""
+    beside: Array
+    """(P,) most probable beside a remainder."""
+    own: Array
+    """(P,) standard deviations from either."""
     covariance: Array
-    """(P, P)."""
+    """(P, P) about the mean."""
 
     @property
     def deviation(self) -> Array:
@@ -35,9 +43,9 @@ class Spread:
 
     def interval(self, place: int, low: float, high: float) -> tuple[float, float]:
         """Return the 95 % interval of a number that lies between bounds."""
-        half = SURE * float(self.deviation[place])
-        middle = float(self.mean[place])
-        return float(np.clip(middle - half, low, high)), float(np.clip(middle + half, low, high))
+        half = SURE * float(self.own[place])
+        ends = sorted((float(self.mean[place]), float(self.beside[place])))
+        return float(np.clip(ends[0] - half, low, high)), float(np.clip(ends[1] + half, low, high))
 
 
 def spread_of(assessed: Assessed, predicting: Composite) -> Spread:
@@ -66,7 +74,9 @@ def spread_of(assessed: Assessed, predicting: Composite) -> Spread:
     whole = np.einsum("w,wpq->pq", share, covariances)
     whole = whole + np.einsum("w,wp,wq->pq", share, between, between)
     centre = np.array([predicting.value(n) for n in local.numbers])
-    return Spread(local.numbers, centre, whole + np.outer(mean - centre, mean - centre))
+    own = np.sqrt(np.maximum(np.diagonal(whole), 0.0))
+    around = whole + np.outer(mean - centre, mean - centre)
+    return Spread(local.numbers, centre, mean, own, around)
 
 
 def idle(predicting: Assessed) -> list[int]:
@@ -99,4 +109,5 @@ def is_told(assessed: Assessed, terms: Collection[int]) -> bool:
     """
     spread = spread_of(assessed, assessed.predicting.model)
     own = [i for i, n in enumerate(spread.numbers) if n.term in terms and n.shape is None]
-    return bool(np.any(np.abs(spread.mean[own]) > SURE * spread.deviation[own]))
+    ends = [spread.interval(i, -np.inf, np.inf) for i in own]
+    return any(low > 0.0 or high < 0.0 for low, high in ends)

@@ -97,12 +97,24 @@ def test_a_shape_counts_from_where_it_is():
 
 
 def test_an_interval_has_95_percent_and_stays_within_bounds():
-    spread = Spread((Number(0, None), Number(1, None)), np.array([3.0, 1.0]),
+    middle = np.array([3.0, 1.0])
+    spread = Spread((Number(0, None), Number(1, None)), middle, middle, np.array([2.0, 0.5]),
                     np.array([[4.0, 0.1], [0.1, 0.25]]))  # fmt: skip
     np.testing.assert_allclose(spread.deviation, [2.0, 0.5])
     assert SURE == pytest.approx(1.96, abs=0.001)
     assert spread.interval(1, -9.0, 9.0) == pytest.approx((0.02, 1.98), abs=1e-3)
     assert spread.interval(0, 0.0, 5.0) == (0.0, 5.0)
+
+
+def test_an_interval_holds_all_between_what_predicts_best_and_what_a_remainder_leaves(device):
+    elsewhere = device.model.with_values(device.local.numbers, [130.0, 790.0])
+    found = spread_of(replace(device, visited={HERE: 0.0}), elsewhere)
+    mean, covariance = least_squares(device, HERE)
+    half = 1.96 * np.sqrt(np.diagonal(covariance))
+    for i, value in enumerate((130.0, 790.0)):
+        low, high = found.interval(i, -np.inf, np.inf)
+        assert low == pytest.approx(min(value, mean[i]) - half[i], rel=1e-6)
+        assert high == pytest.approx(max(value, mean[i]) + half[i], rel=1e-6)
 
 
 def test_what_the_records_do_not_hold_is_idle_the_least_sure_first():
