@@ -16,7 +16,7 @@ from discover.batch.answer import Answer
 from discover.batch.compared import Compared, Row, compared
 from discover.batch.even_pooling import evenly_pooled
 from discover.batch.partial_pooling import Told, partly_pooled
-from discover.batch.pooling import farther_errors
+from discover.batch.pooling import normals_of
 from discover.batch.shared_choice import shared_choice
 from models.cores import CORES
 
@@ -57,9 +57,8 @@ def _number(number: Compared) -> dict[str, Any]:
     if number.between_tests:
         found = evenly_pooled(np.log(table[:, 1]), np.log(table[:, 2]), devices)
     else:
-        found = partly_pooled(
-            table[:, 0], farther_errors(table[:, 0], table[:, 1], table[:, 2]), devices
-        )
+        value, lower, upper = table.T
+        found = partly_pooled(*normals_of(value, lower, upper, number.bounds), devices)
     return {
         "kind": number.kind,
         "name": number.name,

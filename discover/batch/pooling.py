@@ -36,18 +36,25 @@ def standard_errors(lower: Array, upper: Array) -> Array:
     return np.asarray((upper - lower) / (2.0 * _END))
 
 
-def farther_errors(values: Array, lower: Array, upper: Array) -> Array:
-    """Return the standard errors (N,) of 95 % intervals by the end that is farther from the value.
+def normals_of(
+    values: Array, lower: Array, upper: Array, bounds: tuple[float, float]
+) -> tuple[Array, Array]:
+    """Return the normals whose 95 % intervals these are: their means and standard errors, (N,).
 
-    An interval that a bound cuts off, as that of a coefficient near zero, is as wide as on its
-    other side.
+    A value need not be in the middle of its interval. One that a bound cuts off, as that of a
+    coefficient near zero, is as wide about the value as on its other side.
 
     Examples
     --------
-    >>> farther_errors(np.array([0.5]), np.array([0.0]), np.array([2.46])).round(3)
-    array([1.])
+    >>> mean, error = normals_of(
+    ...     np.array([0.5, 0.5]), np.array([0.0, 0.04]), np.array([2.46, 3.96]), (0.0, np.inf)
+    ... )
+    >>> mean, error.round(3)
+    (array([0.5, 2. ]), array([1., 1.]))
     """
-    return np.asarray(np.maximum(values - lower, upper - values) / _END)
+    cut = (lower <= bounds[0]) | (upper >= bounds[1])
+    mean = np.where(cut, values, 0.5 * (lower + upper))
+    return mean, np.asarray(np.maximum(mean - lower, upper - mean) / _END)
 
 
 def pooled(values: Array, errors: Array) -> Pooled:

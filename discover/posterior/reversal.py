@@ -10,7 +10,7 @@ from scipy.special import logsumexp
 
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.covariance import Sizes
-from discover.posterior.local import Local, fitted, judged, local_of
+from discover.posterior.local import Local, fit_of, fitted, judged, local_of
 from discover.posterior.metric import Comparison, curve_given
 from discover.posterior.model import Composite, Number
 from discover.posterior.own_share import own_share
@@ -99,8 +99,9 @@ def with_few_curves(
     """Return friction by few curves, and the model with its numbers fitted beside these.
 
     Its terms are those of `predicting`, friction whole at its place: what `Reversal.terms` add up
-    to. A model that is stated has few curves, so its numbers are the best beside these. How surely
-    friction is known the whole curve tells, where nothing is left to a remainder.
+    to. A model that is stated has few curves and nothing beside its terms, neither a remainder nor
+    friction of each record's own: its numbers are the best so. How surely friction is known the
+    whole curve tells, where nothing is left to a remainder.
     """
     found = reversal_of(assessor, assessed, predicting)
     model, space = predicting.model, predicting.space
@@ -113,8 +114,9 @@ def with_few_curves(
     wide = Composite((*terms, *(replace(whole, fitted=t) for t in more)))
     given = (at, *range(len(terms), len(wide.terms)))
     free = [n for n in wide.numbers if n.shape is None or n.term not in given]
-    sizes = predicting.place.sizes(space.own_unit)
     begun = local_of(space, assessor.evaluator, wide, free)
+    unaided = [place.sizes(space.own_unit) for place in predicting.place.unaided]
+    sizes = max(unaided, key=lambda s: fit_of(space, begun.force, s, None))
     best = fitted(space, assessor.evaluator, begun, sizes, None)
     parts = [best.model.terms[i].fitted for i in given]
     sliding = [i for i, t in zip(given, parts, strict=True) if t.id == name]

@@ -3,7 +3,7 @@ import pytest
 from scipy.integrate import dblquad
 
 from discover.batch.partial_pooling import partly_pooled
-from discover.batch.pooling import farther_errors
+from discover.batch.pooling import normals_of
 
 NAMES = [f"d{i}" for i in range(40)]
 
@@ -126,5 +126,14 @@ def test_inputs_are_not_changed():
 
 
 def test_an_interval_that_a_bound_cuts_off_is_as_wide_as_on_its_other_side():
-    found = farther_errors(np.array([0.1, 5.0]), np.array([0.0, 4.0]), np.array([2.06, 6.0]))
-    assert found == pytest.approx([1.0, 0.5102], rel=1e-3)
+    ends = np.array([0.0, 4.0]), np.array([2.06, 6.0])
+    means, errors = normals_of(np.array([0.1, 5.0]), *ends, (0.0, np.inf))
+    assert means == pytest.approx([0.1, 5.0])
+    assert errors == pytest.approx([1.0, 0.5102], rel=1e-3)
+
+
+def test_a_value_at_one_end_of_its_interval_does_not_make_it_wider():
+    ends = np.array([1.0]), np.array([2.0])
+    means, errors = normals_of(np.array([1.1]), *ends, (0.0, np.inf))
+    assert means == pytest.approx([1.5])
+    assert errors == pytest.approx([0.2551], rel=1e-3)
