@@ -109,5 +109,4 @@ def is_told(assessed: Assessed, terms: Collection[int]) -> bool:
     """
     spread = spread_of(assessed, assessed.predicting.model)
     own = [i for i, n in enumerate(spread.numbers) if n.term in terms and n.shape is None]
-    ends = [spread.interval(i, -np.inf, np.inf) for i in own]
-    return any(low > 0.0 or high < 0.0 for low, high in ends)
+    return bool(np.any(np.abs(spread.mean[own]) > SURE * spread.deviation[own]))
