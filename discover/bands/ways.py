@@ -90,9 +90,10 @@ def _grown(way: Found, seen: set[tuple[object, ...]]) -> Found | None:
 
 
 def _sign(way: Found) -> tuple[object, ...]:
-    """Return by what a way goes on: its bands, what they have and what has joined."""
+    """Return by what a way goes on: its bands, their structures and what has joined."""
+    structures = tuple(tuple(ids_of(way.variants[v])) for v in way.banded.variants)
     joined = tuple((j.id, len(j.terms)) for j in way.joined)
-    return way.banded.variants, way.banded.shares.tobytes(), joined
+    return structures, way.banded.shares.tobytes(), joined
 
 
 def _is_better(now: Found, was: Found) -> bool:

@@ -7,6 +7,7 @@ from scipy.signal import lfilter
 from discover.motion_fit import observe
 from discover.motion_fit.band import choose_cutoff, observe_band
 from discover.records import Record
+from tests.discover.bouc_wen import driven, random_force
 
 STEP = 1.0 / 500.0
 
@@ -199,39 +200,12 @@ def test_what_a_resonance_makes_of_the_motion_is_no_noise():
     assert 0.8 < np.median(ratios) < 1.25
 
 
-def driven(push, step, between):
-    """Return the path of a mass on a spring with Bouc and Wen's hysteresis under a force (N,).
-
-    By Runge and Kutta's rule, so many steps to a sample; the force is gone through twice.
-    """
-    push = np.fft.irfft(np.fft.rfft(push), push.size * between) * between
-    step, path, state = step / between, np.empty(push.size), np.zeros(3)
-
-    def slope(s, f):
-        memory = 5e4 * s[1] - 1e3 * (0.8 * abs(s[1]) * s[2] - 1.1 * s[1] * abs(s[2]))
-        return np.array([s[1], (f - 10.0 * s[1] - 5e4 * s[0] - s[2]) / 2.0, memory])
-
-    for _ in range(2):
-        for i in range(push.size):
-            path[i] = state[0]
-            f, g = push[i], push[(i + 1) % push.size]
-            one = slope(state, f)
-            two = slope(state + 0.5 * step * one, 0.5 * (f + g))
-            three = slope(state + 0.5 * step * two, 0.5 * (f + g))
-            four = slope(state + step * three, g)
-            state = state + step / 6.0 * (one + 2.0 * two + 2.0 * three + four)
-    return path[::between]
-
-
 def test_the_memory_of_a_resonating_device_is_hardly_noise():
     """Its noise is by far less than what mass, damping and a spring leave of a random force."""
     rng, size, step = np.random.default_rng(0), 8192, 1.0 / 750.0
-    lines = np.fft.rfftfreq(size, step)
-    wave = np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, lines.size))
-    push = np.fft.irfft(np.where((lines > 5.0) & (lines < 150.0), wave, 0.0), size)
-    push *= 20.0 / push.std()
+    push = random_force(20.0, size, step, rng)
     x = driven(push, step, 8)
-    turn = 2j * np.pi * lines
+    turn = 2j * np.pi * np.fft.rfftfreq(size, step)
     columns = np.stack([np.fft.irfft(turn**q * np.fft.rfft(x), size) for q in (0, 1, 2)], axis=1)
     straight = push - columns @ np.linalg.lstsq(columns, push, rcond=None)[0]
     record = Record(
