@@ -315,7 +315,8 @@ def next_line(document: Mapping[str, Any]) -> str:
     test = document.get("next_test")
     if not test or test.get("frequency_hz") is None:
         if document.get("identifiable", True):
-            return "Next test: none; no pair of structures is left to tell apart."
+            left = " What is unexplained is in none of them." if _so_far(document) else ""
+            return f"Next test: none; no pair of structures is left to tell apart.{left}"
         return "Next test: none proposed."
     amplitude = significant(1e3 * test["amplitude_m"], 3)
     purpose = next_purpose(test)

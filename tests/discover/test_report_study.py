@@ -197,6 +197,14 @@ def test_headline_says_that_something_else_is_in_the_force_where_much_is_left():
     assert headline(document).endswith("; the best so far, 7.04\u202f% of the force is unexplained")
 
 
+def test_where_no_test_tells_structures_apart_what_is_unexplained_is_said_to_be_in_none():
+    document = sample_document() | {"next_test": None, "identifiable": True}
+    said = "Next test: none; no pair of structures is left to tell apart."
+    assert verdict_lines(document)[-1] == said
+    document["bands"][1]["remainder_percent"] = {"value": 7.04, "interval": [6.0, 8.0]}
+    assert verdict_lines(document)[-1] == said + " What is unexplained is in none of them."
+
+
 def test_headline_does_not_state_a_structure_that_may_well_be_another():
     document = sample_document()
     document["bands"][0]["probability"] = 0.79
