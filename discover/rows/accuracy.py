@@ -14,7 +14,7 @@ from models.checks import Array
 from models.constitutive import ForceModel
 
 _FADES = 0.1  # of a record that does not repeat, over which its ends count less
-_DROWNED = 100.0  # times the median row's noise, above which a row shows nothing
+_DROWNED = 100.0  # times the median row's noise, above which a row may show nothing
 
 
 @dataclass(frozen=True)
@@ -137,12 +137,20 @@ class Unexplained:
 def unexplained(rows: Sequence[RecordRows], forces: Sequence[Array]) -> Unexplained:
     """Return what models' rows (R_r,) leave of records, the noise that rows hold taken off.
 
-    Each record counts alike.
+    Each record counts alike. Rows of far more noise than most only widen what is known, and are
+    left out, unless all rows tell of more.
     """
+    whole = _left_of(rows, forces, most=np.inf)
+    clear = _left_of(rows, forces, most=_DROWNED)
+    return whole if whole.interval[0] > clear.interval[1] else clear
+
+
+def _left_of(rows: Sequence[RecordRows], forces: Sequence[Array], *, most: float) -> Unexplained:
+    """Return `unexplained` of rows with less than `most` times the median row's noise."""
     square = doubt = 0.0
     for r, force in zip(rows, forces, strict=True):
         shown = 1.0 / np.maximum(r.size, 1e-300) ** 2
-        shown = np.where(shown < _DROWNED * float(np.median(shown)), shown, 0.0)
+        shown = np.where(shown < most * float(np.median(shown)), shown, 0.0)
         whole = (r.target - force) ** 2
         share = np.ones(whole.size)
         for w, part in zip(r.observation.windows, r.windows, strict=True):

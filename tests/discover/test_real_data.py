@@ -120,6 +120,8 @@ def test_a_strip_that_relaxes_has_a_memory_and_no_sensor_that_drifts():
     assert {"fractional-derivative", "relaxation"} & found
     assert not {"sensor-drift", "sensor-gain", "sensor-clipping", "time-delay"} & found
     assert study.held_out_relative_error_percent < 42.0  # of the baseline
+    left = study.bands[0].remainder.percent  # most of it where noise is a hundred times the median
+    assert left == pytest.approx(study.relative_error_percent, rel=0.3)
 
 
 STRANGE = (
