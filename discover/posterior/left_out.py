@@ -242,10 +242,8 @@ def _relative(sheet: Sheet, units: Indices, left: Array) -> float:
 
 def _noise(sheet: Sheet, units: Indices) -> float:
     """Return the energy of noise in units of a record, over that of the record's force."""
-    squares = []
-    for u in units:
-        part, basis = sheet.units[int(u)].part, sheet.units[int(u)].basis
-        squares.append(np.ones(part.size) if basis is None else np.sum(basis**2, axis=1))
+    # Of compressed rows all that terms do not tell is in one direction, noise of every row in it.
+    squares = [np.ones(sheet.units[int(u)].part.size) for u in units]
     return _share(sheet, units, squares)
 
 

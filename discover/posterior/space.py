@@ -18,8 +18,6 @@ from models.terms import Scales, Shape, Term
 
 _CURVE_SCALES = (1.0, 0.3, 0.1, 0.03, 0.01)
 """Sizes of a term with a curve of its own, over that at which it makes the whole force."""
-_MOST_HELD = 2**31
-"""Bytes of products at sizes that are held: the oldest are made again where they are asked for."""
 _LEAST_BEGUN = 1e-9
 """Of a coefficient, in its unit, that is zero where a fit starts."""
 
@@ -68,6 +66,9 @@ class Space:
     """N at which one of these makes the whole force."""
     columns_of: ColumnsOf
     """Gives the rows (K, R_r) of terms in a record."""
+    room: int = 2**31
+    """Bytes of products at sizes that are held: the oldest are made again where they are asked for.
+    """
     _products: dict[tuple[float, ...], Products] = field(default_factory=dict)
     _given: dict[Sizes, Given] = field(default_factory=dict)
     _held: int = 0
@@ -100,19 +101,21 @@ class Space:
                 whole = np.concatenate([self.columns, target], axis=1)
                 products = Products(self.sheet, self.own, whole, sizes.loud)
                 self._products[sizes.loud] = products
+                self._held += products.nbytes
             known = given(products, sizes)
-            self._make_room(_bytes(known))
+            self._held += _bytes(known)
         self._given[sizes] = known
+        self._make_room()
         return known
 
-    def _make_room(self, new: int) -> None:
+    def _make_room(self) -> None:
         """Let go of products at sizes asked for longest ago, where all take too many bytes."""
-        self._held += new
-        while self._given and self._held > _MOST_HELD:
+        while len(self._given) > 1 and self._held > self.room:
             oldest = self._given.pop(next(iter(self._given)))
             self._held -= _bytes(oldest)
             if all(g.products is not oldest.products for g in self._given.values()):
                 self._products.pop(oldest.products.loud, None)
+                self._held -= oldest.products.nbytes
 
     def forget(self) -> None:
         """Let go of products, which are many: they are made again where they are asked for."""

@@ -28,9 +28,9 @@ def rows_of(law, plan=PLAN, *, noise=0.01, seed=0, cycles=5):
     ]
 
 
-def random_rows():
+def random_rows(seed=1):
     """Return a long record of random motion, whose units keep some directions of their rows."""
-    rng = np.random.default_rng(1)
+    rng = np.random.default_rng(seed)
     time = np.arange(12000) / 200.0
     omega = 2.0 * np.pi * np.sort(rng.uniform(0.3, 8.0, 60))[:, None]
     angle = omega * time + rng.uniform(0.0, 6.0, omega.shape)
@@ -40,7 +40,7 @@ def random_rows():
     )
     force = 120.0 * a + 800.0 * v
     force = force + 0.01 * np.std(force) * rng.standard_normal(time.size)
-    return record_rows(observe(Record("random.csv", time, force, x)))
+    return record_rows(observe(Record(f"random-{seed}.csv", time, force, x)))
 
 
 def assessor_of(rows, *, friction=True, named=True):

@@ -10,6 +10,7 @@ from discover.posterior.covariance import Sizes
 from discover.posterior.left_out import (
     is_less,
     is_needed,
+    is_told_from_noise,
     left_out,
     predicted_no_worse,
     predicts_best,
@@ -30,6 +31,7 @@ from tests.discover.posterior.small import (
     dense,
     model_of,
     of_formula,
+    random_rows,
     rows_of,
     whole_force,
 )
@@ -198,6 +200,17 @@ def test_what_a_model_leaves_of_a_long_record_is_what_least_squares_on_all_its_r
     fitted, unseen = left_out(assessed.predicting)
     assert np.sum(fitted) == pytest.approx(float(missed @ missed / (force @ force)), rel=0.02)
     assert np.all(unseen >= 0.99 * fitted)
+
+
+@pytest.mark.parametrize(("terms", "told"), [
+    ({"inertia": 120.0, "viscous_damping": 800.0}, False),
+    ({"viscous_damping": 800.0}, True),
+])  # fmt: skip
+def test_of_long_records_what_is_left_is_told_from_all_the_noise_that_is_in_it(terms, told):
+    assessor = assessor_of([random_rows(seed) for seed in range(1, 5)], friction=False)
+    assert any(u.basis is not None for u in assessor.space.sheet.units)
+    assessed = assessor.assess(model_of(**terms), assessor.space.start)
+    assert is_told_from_noise(assessed) is told
 
 
 DEVICE = model_of(inertia=100.0, viscous_damping=700.0)
