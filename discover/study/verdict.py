@@ -100,6 +100,10 @@ def structure_name(band: Mapping[str, Any]) -> str:
     'undetermined: FOIM or IOIM-linear'
     >>> structure_name({"structure": "other", "probability": 0.9, "terms": []})
     'none of the structures'
+    >>> structure_name({"structure": "other", "probability": 0.9, "terms": [
+    ...     {"id": "viscous-damping", "interval": [2490.0, 2510.0]},
+    ...     {"id": "stribeck-friction", "interval": [0.0, 9.1]}]})
+    'other (viscous damping)'
     """
     name = str(band["structure"])
     sure = band.get("probability")
@@ -109,7 +113,8 @@ def structure_name(band: Mapping[str, Any]) -> str:
     if name == OTHER and not band["terms"]:
         return "none of the structures"
     if name == OTHER:
-        return f"other ({listed(_names(band['terms']))})"
+        told = [t for t in band["terms"] if not zero_possible(t.get("interval"))]
+        return f"other ({listed(_names(told or band['terms']))})"
     orders = [round(t["order"], 4) for t in band["terms"] if t.get("order") is not None]
     return f"{name} of order {listed(significant(o, 3) for o in orders)}" if orders else name
 
