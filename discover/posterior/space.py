@@ -18,6 +18,8 @@ from models.terms import Scales, Shape, Term
 
 _CURVE_SCALES = (1.0, 0.3, 0.1, 0.03, 0.01)
 """Sizes of a term with a curve of its own, over that at which it makes the whole force."""
+_MOST_HELD = 2**31
+"""Bytes of products at sizes that are held: the oldest are made again where they are asked for."""
 _LEAST_BEGUN = 1e-9
 """Of a coefficient, in its unit, that is zero where a fit starts."""
 
@@ -66,9 +68,8 @@ class Space:
     """N at which one of these makes the whole force."""
     columns_of: ColumnsOf
     """Gives the rows (K, R_r) of terms in a record."""
-    room: int = 2**31
-    """Bytes of products at sizes that are held: the oldest are made again where they are asked for.
-    """
+    room: int = _MOST_HELD
+    """Bytes of products at sizes that are held."""
     _products: dict[tuple[float, ...], Products] = field(default_factory=dict)
     _given: dict[Sizes, Given] = field(default_factory=dict)
     _held: int = 0

@@ -100,10 +100,6 @@ def structure_name(band: Mapping[str, Any]) -> str:
     'undetermined: FOIM or IOIM-linear'
     >>> structure_name({"structure": "other", "probability": 0.9, "terms": []})
     'none of the structures'
-    >>> structure_name({"structure": "other", "probability": 0.9, "terms": [
-    ...     {"id": "viscous-damping", "interval": [2490.0, 2510.0]},
-    ...     {"id": "stribeck-friction", "interval": [0.0, 9.1]}]})
-    'other (viscous damping)'
     """
     name = str(band["structure"])
     sure = band.get("probability")

@@ -8,7 +8,13 @@ import pytest
 
 from discover.figure_data import StudyFigureData
 from discover.report.study import study_figures, study_report
-from discover.study.verdict import dean_line, headline, next_purpose, verdict_lines
+from discover.study.verdict import (
+    dean_line,
+    headline,
+    next_purpose,
+    structure_name,
+    verdict_lines,
+)
 from tests.discover.sample_study import sample_data, sample_document
 
 VOID = {"meta", "br", "path", "use", "rect"}
@@ -278,6 +284,16 @@ def test_a_band_without_a_term_is_named_in_words():
     document["bands"] = [band | nothing]
     document["boundaries"] = []
     assert headline(document).startswith("none of the structures in all ")
+
+
+def test_what_is_no_structure_is_named_by_what_is_told_from_nothing():
+    damping = {"id": "viscous-damping", "interval": [2490.0, 2510.0]}
+    friction = {"id": "stribeck-friction", "interval": [0.0, 9.1]}
+    band = {"structure": "other", "probability": 0.9, "terms": [damping, friction]}
+    assert structure_name(band) == "other (viscous damping)"
+    told = {**band, "terms": [damping, {**friction, "interval": [2.0, 9.1]}]}
+    assert structure_name(told) == "other (viscous damping and Stribeck friction)"
+    assert structure_name({**band, "terms": [friction]}) == "other (Stribeck friction)"
 
 
 @pytest.mark.usefixtures("undrawn")
