@@ -79,13 +79,6 @@ class Products:
         """(U, F + N + K, F + N + K) products of these."""
         return np.asarray(self.base @ self.base.transpose(0, 2, 1))
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes of the columns over `scale` and of their products."""
-        units, rows = self.sheet.target.shape
-        columns = self.sheet.remainder.shape[1] + self.own.shape[1] + self.columns.shape[1]
-        return int(8 * units * columns * (rows + columns))
-
     @cached_property
     def log_centre(self) -> float:
         """Log density of noise and loud error at their centre, with what was left out of rows."""

@@ -68,8 +68,6 @@ class Space:
     """N at which one of these makes the whole force."""
     columns_of: ColumnsOf
     """Gives the rows (K, R_r) of terms in a record."""
-    room: int = _MOST_HELD
-    """Bytes of products at sizes that are held."""
     _products: dict[tuple[float, ...], Products] = field(default_factory=dict)
     _given: dict[Sizes, Given] = field(default_factory=dict)
     _held: int = 0
@@ -102,21 +100,19 @@ class Space:
                 whole = np.concatenate([self.columns, target], axis=1)
                 products = Products(self.sheet, self.own, whole, sizes.loud)
                 self._products[sizes.loud] = products
-                self._held += products.nbytes
             known = given(products, sizes)
-            self._held += _bytes(known)
+            self._make_room(_bytes(known))
         self._given[sizes] = known
-        self._make_room()
         return known
 
-    def _make_room(self) -> None:
+    def _make_room(self, new: int) -> None:
         """Let go of products at sizes asked for longest ago, where all take too many bytes."""
-        while len(self._given) > 1 and self._held > self.room:
+        self._held += new
+        while self._given and self._held > _MOST_HELD:
             oldest = self._given.pop(next(iter(self._given)))
             self._held -= _bytes(oldest)
             if all(g.products is not oldest.products for g in self._given.values()):
                 self._products.pop(oldest.products.loud, None)
-                self._held -= oldest.products.nbytes
 
     def forget(self) -> None:
         """Let go of products, which are many: they are made again where they are asked for."""

@@ -1,7 +1,5 @@
 """Columns of terms in records, by closed formulas."""
 
-import tracemalloc
-
 import numpy as np
 import pytest
 
@@ -151,23 +149,6 @@ def test_products_follow_the_columns_that_are_added():
     np.testing.assert_allclose(
         space.given(sizes).gram([(np.r_[part.columns, after.force], None)]), gram, rtol=1e-9
     )
-
-
-def test_products_take_no_more_room_than_there_is():
-    space = assessor_of(rows_of(law, APART, cycles=3)).space
-    kinds = space.sheet.loudness.shape[1]
-    asked = [Sizes(0.1, (2.0**-k,) * kinds, 0.0) for k in range(40)]
-    force = space.given(asked[0]).force
-    expected = [space.given(s).gram([(np.array([force]), None)]) for s in asked]
-    space.forget()
-    one = space.given(asked[0])
-    space.room = 4 * (one.products.nbytes + one.left.nbytes + one.taken.nbytes)
-    tracemalloc.start()
-    found = [space.given(s).gram([(np.array([force]), None)]) for s in asked]
-    held = tracemalloc.get_traced_memory()[0]
-    tracemalloc.stop()
-    assert held < 2 * space.room  # all of them would take five times as much
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("bounds", "step", "expected"), [
