@@ -22,7 +22,7 @@ from discover.posterior.left_out import is_needed, predicts_better
 from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
 from discover.posterior.spread import is_told
-from discover.posterior.step import Step
+from discover.posterior.step import Candidate, Step, ordered
 from discover.rows import RecordRows, force_rows
 from discover.rows.columns import Behind
 from models.checks import Array
@@ -134,10 +134,10 @@ def _joined(way: Found, step: Step) -> Found:
 
 
 def _settled(way: Found) -> Found:
-    """Return the bands without what has joined and need not, and the rest in its best shape.
+    """Return the bands without what has joined and need not, and the rest chosen again.
 
     Beside what joined later: an offset of every test's own may have joined for what another term
-    explains since.
+    explains since, and a sensor's drift for a plain offset beside what damping leaves.
     """
     newest = way.joined[-1]
     for joined in way.joined:
@@ -146,19 +146,30 @@ def _settled(way: Found) -> Found:
         if not (is_told(now, own) and is_needed(less, now)):
             way = _left_with(way, joined, less)
         elif joined is not newest:
-            way = _in_best_shape(way, joined, less)
+            way = _chosen_again(way, joined, less)
     return way
 
 
-def _in_best_shape(way: Found, joined: Joined, less: Assessed) -> Found:
-    """Return the bands with something that has joined, chosen again beside all the rest."""
-    own, prior = joined.terms, joined.log_prior
-    best = chosen_again(way.device.assessor, way.assessed, less, own, prior)
+def _chosen_again(way: Found, joined: Joined, less: Assessed) -> Found:
+    """Return the bands with something that has joined, chosen again beside all the rest.
+
+    In another shape, or as a term that it may be mistaken for.
+    """
+    own, prior, now = joined.terms, joined.log_prior, way.assessed
+    there = {j.id for j in way.joined}
+    others = [
+        i for i in own[0].term.mistaken_for if i in way.device.extras and i not in there
+    ]
+    best = chosen_again(way.device.assessor, now, less, own, prior, others)
     if not best.id or best.assessed is None:
         return way
-    terms = tuple(best.assessed.model.terms[i].fitted for i in best.places)
-    others = [replace(j, terms=terms) if j is joined else j for j in way.joined]
-    return searched_with(way.device, others, best.assessed.place, best.assessed)
+    new = replace(joined, terms=tuple(best.assessed.model.terms[i].fitted for i in best.places))
+    if best.id != joined.id:
+        was = Candidate(joined.id, now.value + prior, now, len(own))
+        step = Step((best, was, Candidate("", less.value, less)), way.device.seed)
+        new = replace(new, step=ordered(step))
+    joined_now = [new if j is joined else j for j in way.joined]
+    return searched_with(way.device, joined_now, best.assessed.place, best.assessed)
 
 
 def without(way: Found, joined: Joined) -> Found:

@@ -62,12 +62,17 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
 
 
 def chosen_again(
-    assessor: Assessor, now: Assessed, less: Assessed, own: Sequence[FittedTerm], log_prior: float
+    assessor: Assessor,
+    now: Assessed,
+    less: Assessed,
+    own: Sequence[FittedTerm],
+    log_prior: float,
+    others: Collection[str] = (),
 ) -> Candidate:
     """Return what a model has of one id: as it is, or chosen again beside all that joined later.
 
     A fit can't turn one shape into every other, and what was best while another term was missing
-    need not be best beside it.
+    need not be best beside it. Nor need it be the same term.
 
     Parameters
     ----------
@@ -79,29 +84,33 @@ def chosen_again(
         These terms.
     log_prior : float
         Nats, of such terms in one shape.
+    others : collection of str
+        Ids of terms that may take its place.
 
     Returns
     -------
     Candidate
-        Of the same id where another shape is better; else of the model as it is.
+        Of the same id in another shape or of another one, where that is better; else of the model
+        as it is.
     """
     here = Candidate("", now.value + log_prior, now)
     if not np.isfinite(less.value):
         return here
-    coarse = assessor.evaluator.coarse
-    trials = trials_of(less.space.scales, coarse, [own[0].id], less.model, among=1)
-    least, chosen = here.value - less.value - _NATS, _choice(own)
-    others = [
-        gain for _, gain, _ in _weighed(assessor, less, trials, {}).get(own[0].id, [])
-        if gain.value - gain.trial.log_prior + log_prior > least
-        and _choice(gain.trial.terms) != chosen
-    ]
-    if not others:
-        return here
-    other = _fitted(assessor, less, others)
-    if other.assessed is None:
-        return here
-    found = [here, replace(other, value=other.assessed.value + log_prior)]
+    found = [here]
+    least, as_it_is = here.value - less.value - _NATS - log_prior, (own[0].id, _choice(own))
+    for identifier in (own[0].id, *others):
+        trials = trials_of(
+            less.space.scales, assessor.evaluator.coarse, [identifier], less.model, among=1
+        )
+        gains_of = _weighed(assessor, less, trials, {}).get(identifier, [])
+        starts = [
+            gain for _, gain, _ in gains_of
+            if gain.value - gain.trial.log_prior > least
+            and (identifier, _choice(gain.trial.terms)) != as_it_is
+        ]
+        other = _fitted(assessor, less, starts) if starts else here
+        if other is not here and other.assessed is not None:
+            found.append(replace(other, value=other.assessed.value + log_prior))
     if any(c.assessed.quiet for c in found if c.assessed):
         return ordered(Step(tuple(found), assessor.seed)).best
     return _by_prediction(found, now, assessor.seed).best

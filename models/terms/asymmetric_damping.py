@@ -21,11 +21,16 @@ def column(motion: Motion, shape: Shape) -> Array:
 
 
 def starts(scales: Scales) -> list[Start]:
-    """Return a loss that differs by direction; of one way only, at several powers of speed."""
-    one_way = [
-        Start.one(power=power, side=side) for power in (0.5, 1.5, 2.0, 3.0) for side in (1.0, -1.0)
+    """Return a loss that differs by direction, or is of one way only, at several powers of speed.
+
+    Of power 1, one way only is a loss that differs beside viscous damping.
+    """
+    others = [
+        Start.one(power=power, side=side)
+        for power in (0.5, 1.5, 2.0, 3.0)
+        for side in (0.0, 1.0, -1.0)
     ]
-    return [Start.one(power=1.0, side=0.0), *one_way]
+    return [Start.one(power=1.0, side=0.0), *others]
 
 
 def described(shape: Shape) -> str:

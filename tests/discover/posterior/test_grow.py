@@ -169,3 +169,22 @@ def test_a_shape_that_was_chosen_too_early_is_chosen_again(shape):
     assert term.shape == {"power": 1.0, "side": 0.0}
     assert term.coefficient == pytest.approx(60.0, rel=0.1)
     assert again.log_prior == pytest.approx(-2.0)
+
+
+def test_another_term_takes_the_place_of_one_that_was_mistaken_for_it():
+    """A zero that settles within the first cycle is hardly more than an offset."""
+
+    def law(t, x, v, a):
+        return 120.0 * a + 800.0 * v + 3.0 + 0.0 * x
+
+    assessor = assessor_of(rows_of(law, PLAN, cycles=3), friction=False)
+    less = assessor.assess(DEVICE, assessor.space.start)
+    early = FittedTerm("sensor-drift", 3.0, {"settling_time": 0.1, "stretching_exponent": 0.9})
+    now = assessor.assess(less.model.plus(early), less.place)
+    alone = chosen_again(assessor, now, less, [early], -5.0)
+    assert alone.id != "force-offset"
+    again = chosen_again(assessor, now, less, [early], -5.0, ("force-offset", "stiffness"))
+    assert again.id == "force-offset"
+    offset = again.assessed.model.terms[2].fitted
+    assert offset.coefficient == pytest.approx(3.0, rel=0.05)
+    assert again.log_prior == pytest.approx(-5.0)
