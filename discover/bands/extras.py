@@ -17,12 +17,12 @@ from discover.bands.search import Banded, BandSearch, searched
 from discover.bands.variants import variants_of
 from discover.posterior.assess import Assessed
 from discover.posterior.climb import Place
-from discover.posterior.grow import chosen_again, grown
+from discover.posterior.grow import chosen_again, grown, weighed
 from discover.posterior.left_out import is_needed, predicts_better
 from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
 from discover.posterior.spread import is_told
-from discover.posterior.step import Candidate, Step, ordered
+from discover.posterior.step import Candidate, Step
 from discover.rows import RecordRows, force_rows
 from discover.rows.columns import Behind
 from models.checks import Array
@@ -107,15 +107,19 @@ def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
 def with_one_more(way: Found) -> Found | Step:
     """Return the bands with the term that makes the records most probable, or why there is none."""
     now = way.assessed
-    there = {j.id for j in way.joined}
-    open_ids: Collection[str] = [i for i in way.device.extras if i not in there]
-    step = _that_predict(now, grown(way.device.assessor, now, open_ids))
+    step = _that_predict(now, grown(way.device.assessor, now, _open(way)))
     while step.best.id and step.best.assessed is not None:
         more = _settled(_joined(way, step))
         if any(j.id == step.best.id for j in more.joined):
             return more
         step = _that_predict(now, step.without([step.best.id]))
     return step
+
+
+def _open(way: Found) -> list[str]:
+    """Return the ids of what may join."""
+    there = {j.id for j in way.joined}
+    return [i for i in way.device.extras if i not in there]
 
 
 def _joined(way: Found, step: Step) -> Found:
@@ -156,18 +160,18 @@ def _chosen_again(way: Found, joined: Joined, less: Assessed) -> Found:
     In another shape, or as a term that it may be mistaken for.
     """
     own, prior, now = joined.terms, joined.log_prior, way.assessed
-    there = {j.id for j in way.joined}
-    others = [
-        i for i in own[0].term.mistaken_for if i in way.device.extras and i not in there
-    ]
-    best = chosen_again(way.device.assessor, now, less, own, prior, others)
+    open_ids = _open(way)
+    others = [i for i in own[0].term.mistaken_for if i in open_ids]
+    among = len(open_ids) + 1
+    best = chosen_again(way.device.assessor, now, less, own, prior, others, among)
     if not best.id or best.assessed is None:
         return way
-    new = replace(joined, terms=tuple(best.assessed.model.terms[i].fitted for i in best.places))
+    terms = tuple(best.assessed.model.terms[i].fitted for i in best.places)
+    step = joined.step
     if best.id != joined.id:
         was = Candidate(joined.id, now.value + prior, now, len(own))
-        step = Step((best, was, Candidate("", less.value, less)), way.device.seed)
-        new = replace(new, step=ordered(step))
+        step = weighed((best, was, Candidate("", less.value, less)), less, way.device.seed)
+    new = Joined(terms, best.log_prior, step)
     joined_now = [new if j is joined else j for j in way.joined]
     return searched_with(way.device, joined_now, best.assessed.place, best.assessed)
 

@@ -27,7 +27,7 @@ def found(device: Device) -> Found:
     looked for with bands, with one band throughout, and beside the other family, until a way is
     found whose terms are all told and leave but noise.
     """
-    best = searched_with(device, (), None)
+    best = _or_one_band(searched_with(device, (), None))
     if best.quiet:
         return best
     ends, seen = list[Found](), set[tuple[object, ...]]()
@@ -37,13 +37,30 @@ def found(device: Device) -> Found:
         end = _grown(start, seen)
         if end is None:
             continue
-        end = end if end.quiet else without_idle(end)
+        end = _or_one_band(end) if end.quiet else without_idle(end)
         ends.append(end)
         if len(ends) == 1 or (_names(end) != _names(best) and _is_better(end, best)):
             best = end
         if best.quiet:
             return best
     return replace(best, rivals=tuple(e for e in ends if _names(e) != _names(best)))
+
+
+def _or_one_band(way: Found) -> Found:
+    """Return a way that leaves but noise, or one band with one term more where that is better.
+
+    As bands may stand for a term, they are weighed against each.
+    """
+    if not way.quiet or way.banded.bands == 1 or way.device.bands is not None:
+        return way
+    device, banded = way.device, way.fewer[0]
+    one = replace(
+        way, device=replace(device, bands=1), banded=banded, fewer=(banded,), before=None
+    )
+    more = with_one_more(one)
+    if isinstance(more, Step) or not _is_better(more, way):
+        return way
+    return replace(more, device=device)
 
 
 def _names(way: Found) -> set[str]:

@@ -56,9 +56,17 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
         found += _tried(assessor, now, chosen, len(ids), most)
+    return weighed(found, now, assessor.seed)
+
+
+def weighed(found: Sequence[Candidate], now: Assessed, seed: int) -> Step:
+    """Return candidates, one of them the model as it is, the most probable first.
+
+    By evidence where one leaves but noise, else by how well records left out are predicted.
+    """
     if any(c.assessed.quiet for c in found if c.assessed):
-        return ordered(Step(tuple(found), assessor.seed))
-    return _by_prediction(found, now, assessor.seed)
+        return ordered(Step(tuple(found), seed))
+    return _by_prediction(found, now, seed)
 
 
 def chosen_again(
@@ -68,6 +76,7 @@ def chosen_again(
     own: Sequence[FittedTerm],
     log_prior: float,
     others: Collection[str] = (),
+    among: int = 1,
 ) -> Candidate:
     """Return what a model has of one id: as it is, or chosen again beside all that joined later.
 
@@ -86,6 +95,8 @@ def chosen_again(
         Nats, of such terms in one shape.
     others : collection of str
         Ids of terms that may take its place.
+    among : int
+        Number of terms that may join in all.
 
     Returns
     -------
@@ -96,24 +107,22 @@ def chosen_again(
     here = Candidate("", now.value + log_prior, now)
     if not np.isfinite(less.value):
         return here
-    found = [here]
-    least, as_it_is = here.value - less.value - _NATS - log_prior, (own[0].id, _choice(own))
+    found, as_it_is = [here], (own[0].id, _choice(own))
+    least = here.value - less.value - _NATS
     for identifier in (own[0].id, *others):
         trials = trials_of(
-            less.space.scales, assessor.evaluator.coarse, [identifier], less.model, among=1
+            less.space.scales, assessor.evaluator.coarse, [identifier], less.model, among=among
         )
-        gains_of = _weighed(assessor, less, trials, {}).get(identifier, [])
+        more = log_prior - trials.entries[0].log_prior if identifier == own[0].id else 0.0
         starts = [
-            gain for _, gain, _ in gains_of
-            if gain.value - gain.trial.log_prior > least
+            gain for _, gain, _ in _weighed(assessor, less, trials, {}).get(identifier, [])
+            if gain.value + more > least
             and (identifier, _choice(gain.trial.terms)) != as_it_is
         ]
         other = _fitted(assessor, less, starts) if starts else here
         if other is not here and other.assessed is not None:
-            found.append(replace(other, value=other.assessed.value + log_prior))
-    if any(c.assessed.quiet for c in found if c.assessed):
-        return ordered(Step(tuple(found), assessor.seed)).best
-    return _by_prediction(found, now, assessor.seed).best
+            found.append(replace(other, value=other.value + more))
+    return weighed(found, now, assessor.seed).best
 
 
 def _by_prediction(found: Sequence[Candidate], now: Assessed, seed: int) -> Step:
@@ -186,13 +195,16 @@ def _weighed(
 def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:
     """Return a term beside the model, fitted from its best shapes."""
     evaluator = assessor.evaluator.coarse
-    start = now.place.towards(assessor.space.quiet)
+    quiet = assessor.space.quiet
+    start = now.place.towards(quiet)
     chosen = [
         (gain, model) for gain in _starting(starts)
         if np.all(np.isfinite(evaluator.force(model := now.model.plus(*_begun(gain)))))
     ]
     if len(chosen) > 1:
-        glanced = [(g, *assessor.glance(m, start, iterations=FEW_STEPS)) for g, m in chosen]
+        # What a shape leaves may be all but noise, or nearly as much as there was.
+        places = list(dict.fromkeys((start, now.place, quiet)))
+        glanced = [(g, *assessor.glance(m, places, iterations=FEW_STEPS)) for g, m in chosen]
         glanced.sort(key=lambda b: b[2] + b[0].trial.log_prior, reverse=True)
         chosen = [(g, m) for g, m, _ in glanced]
     for gain, model in chosen:

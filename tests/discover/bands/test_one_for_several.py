@@ -1,9 +1,9 @@
-"""Numbers of every test's own give way to one that all share, once another term explains the rest.
-"""
+"""What stands for something else gives way to it: a test's own numbers, another term, bands."""
 
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from discover.bands.ways import found
 from discover.study import StudyOptions
@@ -54,3 +54,40 @@ def test_a_constant_force_is_no_drift_once_the_loss_by_direction_has_joined():
     for name, one in joined.items():
         assert one.step.best.id == name
         assert one.step.probabilities[name] > 0.9
+
+
+def sprung(amplitude, omega, theta):
+    """A damper with a spring beside it."""
+    x, v = amplitude * np.sin(theta), amplitude * omega * np.cos(theta)
+    return -80.0 * omega**2 * x + 300.0 * v + 6.0 * np.tanh(v / 2e-3) + 300.0 * x
+
+
+@pytest.mark.parametrize("frequencies", [(0.2, 0.7, 2.5, 8.0), (0.3, 0.6, 1.2, 2.4)])
+def test_bands_do_not_stand_for_a_spring(frequencies):
+    records = campaign(
+        sprung, frequencies=frequencies, amplitudes=(0.004, 0.01, 0.02), noise=0.02
+    )
+    device = prepare(records, StudyOptions()).device
+    extras = ("stiffness", "cubic-stiffness", "force-offset")
+    answer = found(replace(device, extras=extras))
+    (spring,) = answer.joined
+    assert spring.id == "stiffness" and answer.quiet
+    assert np.isclose(spring.terms[0].coefficient, 300.0, rtol=0.05)
+    assert answer.banded.bands == 1 and answer.device.bands is None
+
+
+def switched(amplitude, omega, theta):
+    """A damper that is stiffer above a frequency: no term stands for that."""
+    x, v = amplitude * np.sin(theta), amplitude * omega * np.cos(theta)
+    viscous = 300.0 if omega < 2.0 * np.pi else 900.0
+    return -80.0 * omega**2 * x + viscous * v + 6.0 * np.tanh(v / 2e-3)
+
+
+def test_no_term_stands_for_bands():
+    records = campaign(
+        switched, frequencies=(0.2, 0.5, 1.5, 4.0), amplitudes=(0.004, 0.01, 0.02), noise=0.02
+    )
+    device = prepare(records, StudyOptions()).device
+    answer = found(replace(device, extras=("stiffness", "force-offset", "time-delay")))
+    assert not answer.joined and answer.quiet
+    assert answer.banded.bands == 2 and answer.banded.coordinate == "frequency"
