@@ -104,10 +104,13 @@ def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
     return result
 
 
-def with_one_more(way: Found) -> Found | Step:
-    """Return the bands with the term that makes the records most probable, or why there is none."""
+def with_one_more(way: Found, *, least: float = -np.inf) -> Found | Step:
+    """Return the bands with the term that makes the records most probable, or why there is none.
+
+    With `least`, log evidence (nats) that a term has to reach, those that can't are not fitted.
+    """
     now = way.assessed
-    step = _that_predict(now, grown(way.device.assessor, now, _open(way)))
+    step = _that_predict(now, grown(way.device.assessor, now, _open(way), least=least))
     while step.best.id and step.best.assessed is not None:
         more = _settled(_joined(way, step))
         if any(j.id == step.best.id for j in more.joined):

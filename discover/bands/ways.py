@@ -57,7 +57,7 @@ def _or_one_band(way: Found) -> Found:
     one = replace(
         way, device=replace(device, bands=1), banded=banded, fewer=(banded,), before=None
     )
-    more = with_one_more(one)
+    more = with_one_more(one, least=way.value)
     if isinstance(more, Step) or not _is_better(more, way):
         return way
     return replace(more, device=device)

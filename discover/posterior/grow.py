@@ -8,7 +8,7 @@ predicted from the others.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,10 +31,28 @@ _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already
 _NATS = 20.0  # less than that; also of evidence, by which a term may lose beside a remainder
-_Behind = tuple[float, Gain, float]  # by how much a trial gains less than the greatest, and that
 
 
-def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
+@dataclass(frozen=True)
+class _Weighed:
+    """What a trial gains in a straight line at some sizes."""
+
+    gain: Gain
+    """That."""
+    most: float
+    """The greatest gain of any trial at them, nats."""
+    before: float
+    """Log evidence of the model as it is at them, nats; -inf where that was not looked at."""
+
+    @property
+    def behind(self) -> float:
+        """By how much the trial gains less than the greatest, nats."""
+        return self.most - self.gain.value
+
+
+def grown(
+    assessor: Assessor, now: Assessed, ids: Collection[str], *, least: float = -np.inf
+) -> Step:
     """Return what may join a model.
 
     Terms that only add a force come first. Those that are simulated in time, which takes long, are
@@ -48,6 +66,9 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         The model as it is.
     ids : collection of str
         Terms that may join.
+    least : float
+        Log evidence that a model with one of them is to have, nats: those that can't are not
+        fitted.
     """
     found = [Candidate("", now.value, now)]
     most: dict[Place, float] = {}
@@ -55,7 +76,7 @@ def grown(assessor: Assessor, now: Assessed, ids: Collection[str]) -> Step:
         chosen = [i for i in ids if _simulated(i) is simulated]
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
-        found += _tried(assessor, now, chosen, len(ids), most)
+        found += _tried(assessor, now, chosen, len(ids), most, least)
     return weighed(found, now, assessor.seed)
 
 
@@ -115,9 +136,9 @@ def chosen_again(
         )
         more = log_prior - trials.entries[0].log_prior if identifier == own[0].id else 0.0
         starts = [
-            gain for _, gain, _ in _weighed(assessor, less, trials, {}).get(identifier, [])
-            if gain.value + more > least
-            and (identifier, _choice(gain.trial.terms)) != as_it_is
+            w.gain for w in _weighed(assessor, less, trials, {}).get(identifier, [])
+            if w.gain.value + more > least
+            and (identifier, _choice(w.gain.trial.terms)) != as_it_is
         ]
         other = _fitted(assessor, less, starts) if starts else here
         if other is not here and other.assessed is not None:
@@ -149,27 +170,29 @@ def _simulated(identifier: str) -> bool:
 
 
 def _tried(
-    assessor: Assessor, now: Assessed, ids: Sequence[str], among: int, most: dict[Place, float]
+    assessor: Assessor, now: Assessed, ids: Sequence[str], among: int, most: dict[Place, float],
+    least: float,
 ) -> list[Candidate]:
     """Return some terms beside the model; `most` is kept, what any has gained at some sizes."""
     coarse = assessor.evaluator.coarse
     trials = trials_of(now.space.scales, coarse, ids, now.model, among=among)
-    behind = _weighed(assessor, now, trials, most)
+    weighed_by_id = _weighed(assessor, now, trials, most)
     found: list[Candidate] = []
-    for rank, one in enumerate(sorted(behind.values(), key=lambda own: own[0][0])):
-        gain = one[0][1]
+    for rank, one in enumerate(sorted(weighed_by_id.values(), key=lambda own: own[0].behind)):
+        gain = one[0].gain
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
-        worth = any(g.value >= max(_HOPELESS, near * top - _NATS) for _, g, top in one)
-        if rank >= _NAMES or not worth:
+        worth = any(w.gain.value >= max(_HOPELESS, near * w.most - _NATS) for w in one)
+        enough = np.isneginf(least) or any(w.before + w.gain.value / _HALF >= least for w in one)
+        if rank >= _NAMES or not worth or not enough:
             found.append(Candidate(gain.trial.id, now.value + min(gain.value, 0.0), None))
         else:
-            found.append(_fitted(assessor, now, [g for _, g, _ in one]))
+            found.append(_fitted(assessor, now, [w.gain for w in one]))
     return found
 
 
 def _weighed(
     assessor: Assessor, now: Assessed, trials: Trials, most: dict[Place, float]
-) -> dict[str, list[_Behind]]:
+) -> dict[str, list[_Weighed]]:
     """Return what trials gain in a straight line, by id, the nearest to the greatest gain first.
 
     At the sizes that predict best, those of a model that leaves but noise, and the model's own.
@@ -178,18 +201,19 @@ def _weighed(
     if not trials.entries:
         return {}
     space, curve = now.space, assessor.curve_of(now.model)
-    behind: dict[str, list[_Behind]] = {}
+    found: dict[str, list[_Weighed]] = {}
     best = now.predicting  # where more than noise is left, prediction decides
     for place, local in {
         best.place: best.local, space.quiet: now.local, now.place: now.local
     }.items():
-        weighed = gains(space, trials, local, place.sizes(space.own_unit), curve)
-        top = most[place] = max(most.get(place, -np.inf), weighed[0].value)
-        for gain in weighed:
-            behind.setdefault(gain.trial.id, []).append((top - gain.value, gain, top))
-    for one in behind.values():
-        one.sort(key=lambda entry: entry[0])
-    return behind
+        all_gains = gains(space, trials, local, place.sizes(space.own_unit), curve)
+        top = most[place] = max(most.get(place, -np.inf), all_gains[0].value)
+        before = now.visited.get(place, -np.inf)
+        for gain in all_gains:
+            found.setdefault(gain.trial.id, []).append(_Weighed(gain, top, before))
+    for one in found.values():
+        one.sort(key=lambda w: w.behind)
+    return found
 
 
 def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:

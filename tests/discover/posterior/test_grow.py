@@ -202,3 +202,15 @@ def test_the_shape_counts_that_is_right_where_much_else_is_missing():
     _, step = step_of(more, ("asymmetric-damping",), model, plan=plan)
     (loss,) = (c for c in step.candidates if c.id)
     assert loss.assessed.model.terms[2].fitted.shape == {"power": 1.0, "side": 0.0}
+
+
+def test_what_can_not_reach_the_evidence_that_is_asked_for_is_not_fitted():
+    now, step = step_of(EFFECTS["stiffness"][0])
+    reached = step.best.value
+    fitted = []
+    for least in (reached - 1.0, reached + 1e9):
+        asked = grown(now.assessor, now, IDS, least=least)
+        assert {c.id for c in asked.candidates} == {"", *IDS}
+        fitted.append({c.id for c in asked.candidates if c.assessed})
+    assert fitted[0] >= {"", "stiffness"}
+    assert fitted[1] == {""}
