@@ -107,18 +107,17 @@ class Assessor:
     """Of what is drawn."""
 
     def glance(
-        self, model: Composite, places: Sequence[Place], *, iterations: int
+        self, model: Composite, place: Place, *, iterations: int
     ) -> tuple[Composite, float]:
-        """Return a model after a few steps of a fit at the first of some sizes, on coarse rows.
+        """Return a model after a few steps of a fit, and its log evidence at these sizes, nats.
 
-        And its log evidence, nats, at those of them where it is most probable.
+        On the coarse rows.
         """
         space, curve = self.behind(model), self.curve_of(model)
-        first, *_ = sizes = [place.sizes(space.own_unit) for place in places]
+        sizes = place.sizes(space.own_unit)
         here = local_of(space, self.evaluator.coarse, model)
-        local = fitted(space, self.evaluator.coarse, here, first, curve, iterations=iterations)
-        beside = local.beside(space, curve)
-        value = max(judged(local, beside, s).value for s in sizes)
+        local = fitted(space, self.evaluator.coarse, here, sizes, curve, iterations=iterations)
+        value = judged(local, local.beside(space, curve), sizes).value
         if space is not self.space:
             space.forget()
         return local.model, value
@@ -134,7 +133,7 @@ class Assessor:
 
     def nearest(self, models: Sequence[Composite], place: Place) -> Composite:
         """Return the model that a few steps of a fit make most probable, after these steps."""
-        begun = [self.glance(m, [place], iterations=FEW_STEPS) for m in models]
+        begun = [self.glance(m, place, iterations=FEW_STEPS) for m in models]
         return max(begun, key=lambda b: b[1])[0]
 
     def assess(self, model: Composite, start: Place, *, refit: bool = True) -> Assessed:

@@ -219,16 +219,13 @@ def _weighed(
 def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:
     """Return a term beside the model, fitted from its best shapes."""
     evaluator = assessor.evaluator.coarse
-    quiet = assessor.space.quiet
-    start = now.place.towards(quiet)
+    start = now.place.towards(assessor.space.quiet)
     chosen = [
         (gain, model) for gain in _starting(starts)
         if np.all(np.isfinite(evaluator.force(model := now.model.plus(*_begun(gain)))))
     ]
     if len(chosen) > 1:
-        # What a shape leaves may be all but noise, or nearly as much as there was.
-        places = list(dict.fromkeys((start, now.place, quiet)))
-        glanced = [(g, *assessor.glance(m, places, iterations=FEW_STEPS)) for g, m in chosen]
+        glanced = [(g, *assessor.glance(m, start, iterations=FEW_STEPS)) for g, m in chosen]
         glanced.sort(key=lambda b: b[2] + b[0].trial.log_prior, reverse=True)
         chosen = [(g, m) for g, m, _ in glanced]
     for gain, model in chosen:

@@ -157,8 +157,7 @@ def test_a_model_as_it_is_given_keeps_its_numbers_and_is_judged_at_them():
 
 def test_a_glance_has_the_evidence_at_its_sizes_on_coarse_rows(right):
     assessor, place = right.assessor, Place((-8, -8, -9))
-    start = model_of(inertia=20.0, viscous_damping=9e3)
-    model, value = assessor.glance(start, [place], iterations=9)
+    model, value = assessor.glance(model_of(inertia=20.0, viscous_damping=9e3), place, iterations=9)
     assert value == pytest.approx(evidence(right, place), abs=0.5)
     assert model.value(Number(0, None)) == pytest.approx(120.0, rel=0.01)
 

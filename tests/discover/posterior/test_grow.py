@@ -191,19 +191,6 @@ def test_another_term_takes_the_place_of_one_that_was_mistaken_for_it():
     assert again.log_prior == pytest.approx(np.log(0.5 / 10))  # its own: of one shape
 
 
-def test_the_shape_counts_that_is_right_where_much_else_is_missing():
-    """Without the offset every shape is far from noise; what counts is how far."""
-
-    def more(t, x, v, a):
-        return 900.0 * v * np.abs(v) - 40.0 * np.abs(v) + 0.5
-
-    plan = [(f, a) for f in (0.2, 0.7, 2.5, 8.0) for a in (0.002, 0.006)]
-    model = model_of(inertia=80.0, viscous_damping=100.0)
-    _, step = step_of(more, ("asymmetric-damping",), model, plan=plan)
-    (loss,) = (c for c in step.candidates if c.id)
-    assert loss.assessed.model.terms[2].fitted.shape == {"power": 1.0, "side": 0.0}
-
-
 def test_what_can_not_reach_the_evidence_that_is_asked_for_is_not_fitted():
     now, step = step_of(EFFECTS["stiffness"][0])
     reached = step.best.value
