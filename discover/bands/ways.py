@@ -60,7 +60,7 @@ def _or_one_band(way: Found) -> Found:
     more = with_one_more(one, least=way.value)
     if isinstance(more, Step) or not _is_better(more, way):
         return way
-    return replace(more, device=device)
+    return searched_with(device, more.joined, more.banded.place, more.assessed)
 
 
 def _names(way: Found) -> set[str]:

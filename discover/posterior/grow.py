@@ -134,6 +134,8 @@ def chosen_again(
         trials = trials_of(
             less.space.scales, assessor.evaluator.coarse, [identifier], less.model, among=among
         )
+        if not trials.entries:  # it needs a term that the model lacks
+            continue
         more = log_prior - trials.entries[0].log_prior if identifier == own[0].id else 0.0
         starts = [
             w.gain for w in _weighed(assessor, less, trials, {}).get(identifier, [])

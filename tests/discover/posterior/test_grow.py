@@ -201,3 +201,12 @@ def test_what_can_not_reach_the_evidence_that_is_asked_for_is_not_fitted():
         fitted.append({c.id for c in asked.candidates if c.assessed})
     assert fitted[0] >= {"", "stiffness"}
     assert fitted[1] == {""}
+
+
+def test_what_needs_a_term_that_is_gone_stays_as_it_is():
+    assessor = assessor_of(rows_of(EFFECTS["stiffness"][0], PLAN, cycles=3), friction=False)
+    less = assessor.assess(DEVICE, assessor.space.start)
+    fall = FittedTerm("stribeck-friction", 1.0, {"stribeck_velocity": 0.01, "presliding": 0.0})
+    now = assessor.assess(less.model.plus(fall), less.place)
+    again = chosen_again(assessor, now, less, [fall], -5.0)
+    assert again.assessed is now and again.id == ""
