@@ -144,7 +144,7 @@ def _settled(way: Found) -> Found:
     """Return the bands without what has joined and need not, and the rest chosen again.
 
     Beside what joined later: an offset of every test's own may have joined for what another term
-    explains since, and a sensor's drift for a plain offset beside what damping leaves.
+    explains since, and a sensor's drift where an offset is enough now.
     """
     newest = way.joined[-1]
     for joined in way.joined:

@@ -53,14 +53,16 @@ def _or_one_band(way: Found) -> Found:
     """
     if not way.quiet or way.banded.bands == 1 or way.device.bands is not None:
         return way
-    device, banded = way.device, way.fewer[0]
-    one = replace(
-        way, device=replace(device, bands=1), banded=banded, fewer=(banded,), before=None
-    )
-    more = with_one_more(one, least=way.value)
+    more = with_one_more(_in_one_band(way), least=way.value)
     if isinstance(more, Step) or not _is_better(more, way):
         return way
-    return searched_with(device, more.joined, more.banded.place, more.assessed)
+    return searched_with(way.device, more.joined, more.banded.place, more.assessed)
+
+
+def _in_one_band(way: Found) -> Found:
+    """Return a way whose records are one band throughout."""
+    device, banded = replace(way.device, bands=1), way.fewer[0]
+    return replace(way, device=device, banded=banded, fewer=(banded,))
 
 
 def _names(way: Found) -> set[str]:
@@ -76,10 +78,9 @@ def _starts(now: Found) -> Iterator[Found]:
     """
     yield now
     if now.device.bands in (None, 1):
-        device, banded = replace(now.device, bands=1), now.fewer[0]
-        one = replace(now, device=device, banded=banded, fewer=(banded,))
+        one = _in_one_band(now)
         yield one
-        unaided = now.search.unaided(banded)
+        unaided = now.search.unaided(one.banded)
         for family in sorted({family_of(ids_of(v)) for v in one.variants}):
             device = replace(one.device, family=family)
             own = held(device, now.search, unaided)

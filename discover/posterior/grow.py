@@ -145,15 +145,15 @@ def chosen_again(
         other = _fitted(assessor, less, starts) if starts else here
         if other is not here and other.assessed is not None:
             found.append(replace(other, value=other.value + more))
-    return weighed(found, now, assessor.seed).best
+    return weighed(found, now, assessor.seed).best if len(found) > 1 else here
 
 
 def _by_prediction(found: Sequence[Candidate], now: Assessed, seed: int) -> Step:
     """Return candidates weighed by how well they predict records that are left out."""
     before = unseen(now)
-    weighed = [_predicting(c, before) if c.value > now.value - _NATS else c for c in found]
-    parts = next(c.left.size for c in weighed if c.left is not None)
-    return ordered(Step(tuple(weighed), seed, own_lines(now.predicting, parts)))
+    likely = [_predicting(c, before) if c.value > now.value - _NATS else c for c in found]
+    parts = next(c.left.size for c in likely if c.left is not None)
+    return ordered(Step(tuple(likely), seed, own_lines(now.predicting, parts)))
 
 
 def _predicting(candidate: Candidate, before: Array) -> Candidate:
@@ -178,9 +178,9 @@ def _tried(
     """Return some terms beside the model; `most` is kept, what any has gained at some sizes."""
     coarse = assessor.evaluator.coarse
     trials = trials_of(now.space.scales, coarse, ids, now.model, among=among)
-    weighed_by_id = _weighed(assessor, now, trials, most)
+    by_id = _weighed(assessor, now, trials, most)
     found: list[Candidate] = []
-    for rank, one in enumerate(sorted(weighed_by_id.values(), key=lambda own: own[0].behind)):
+    for rank, one in enumerate(sorted(by_id.values(), key=lambda own: own[0].behind)):
         gain = one[0].gain
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
         worth = any(w.gain.value >= max(_HOPELESS, near * w.most - _NATS) for w in one)
