@@ -83,10 +83,7 @@ def _space(
     if behind is None or all(t.term.acts == "force" for t in terms):
         space, curve = space_of(device.rows, device.friction)
         return space, curve, parts_of(space, [j.terms for j in joined])
-    sheet = device.assessor.space.sheet
-    changed = Behind(
-        behind.model.by_record(sheet), {r.file: i for i, r in enumerate(device.rows)}
-    )
+    changed = device.assessor.evaluator.behind(behind.model)
     targets = _targets(device.rows, changed)
     space, curve = space_of(
         device.rows, device.friction, columns_of=changed, targets=targets
@@ -98,7 +95,7 @@ def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
     """Return what columns times whole coefficients shall make of each record's force."""
     result = []
     for r in rows:
-        model = changed.models[changed.places[r.file]]
+        model = changed.models[r.file]
         whole = changed(r, model.terms)  # a step of each as far as its column takes it
         result.append(r.target - force_rows(r, model) + whole.sum(axis=0))
     return result

@@ -16,7 +16,6 @@ from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite, Evaluator
 from discover.posterior.setup import behind
 from discover.posterior.space import Part, Space, departures
-from discover.rows.columns import Behind
 
 _ROUNDS = 3  # of fitting and climbing
 _SMALL = -10
@@ -179,9 +178,7 @@ class Assessor:
         """
         if self.friction is None or not model.changes_force:
             return self.space
-        sheet = self.space.sheet
-        changed = Behind(model.by_record(sheet), {r.file: i for i, r in enumerate(sheet.rows)})
-        return behind(self.space, self.friction, changed)
+        return behind(self.space, self.friction, self.evaluator.behind(model))
 
     def curve_of(self, model: Composite) -> Part | None:
         """Return the departures of friction's curve where a model has that friction.

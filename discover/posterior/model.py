@@ -10,7 +10,7 @@ import numpy as np
 
 from discover.posterior.sheet import Sheet
 from discover.rows import RecordForces
-from discover.rows.columns import finite_slope, force_columns, moved
+from discover.rows.columns import Behind, finite_slope, force_columns, moved
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
 from models.terms import Scales
@@ -165,6 +165,14 @@ class Evaluator:
             blocks = [force_columns(r, [one]) for r in self._rows]
             self._known[key] = self._sheet.stack(blocks)[:, 0]
         return self._known[key]
+
+    def behind(self, model: Composite) -> Behind:
+        """Return what gives columns of terms as a model's changes pass them on."""
+        by_record = model.by_record(self._sheet).items()
+        return Behind(
+            {self._rows[place].file: own for place, own in by_record},
+            {self._rows[place].file: self._forces[place] for place, _ in by_record},
+        )
 
     def trials(self, model: Composite, terms: Sequence[FittedTerm]) -> Array:
         """Return the rows (U, K, R) of terms that may join a model, over their coefficients.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.rows.force import RecordForces
+from discover.rows.force import RecordForces, unit
 from discover.rows.record_rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
@@ -49,7 +49,7 @@ def force_columns(rows: RecordRows, terms: Sequence[FittedTerm]) -> Array:
         if not chosen:
             continue
         motion = rows.cycle if on_cycle and rows.cycle is not None else rows.motion
-        forces = np.stack([_force(terms[k], motion) for k in chosen])
+        forces = np.stack([terms[k].coefficient * unit(terms[k], motion) for k in chosen])
         if on_cycle and rows.cycle_rows is not None:
             result[chosen] = forces @ rows.cycle_rows
         else:
@@ -59,12 +59,6 @@ def force_columns(rows: RecordRows, terms: Sequence[FittedTerm]) -> Array:
 
 def _on_cycle(rows: RecordRows, fitted: FittedTerm) -> bool:
     return rows.cycle is not None and fitted.term.remembers(fitted.shape) != "time"
-
-
-def _force(fitted: FittedTerm, motion: Motion) -> Array:
-    if fitted.term.column is None:
-        raise ValueError(f"{fitted.id} adds no force")
-    return fitted.coefficient * fitted.term.column(motion, fitted.shape)
 
 
 def moved(
@@ -92,33 +86,24 @@ def finite_slope(change: Array) -> Array:
 class Behind:
     """Columns of terms as changes of motion and of force pass them on: their slopes there."""
 
-    models: Mapping[int, ForceModel]
-    """By the records' place: all that holds in each, changes among it."""
-    places: Mapping[str, int]
-    """Of the records, by file."""
+    models: Mapping[str, ForceModel]
+    """All that holds in each record, changes among it; by the records' files."""
+    forces: Mapping[str, RecordForces]
+    """What evaluates them, likewise."""
 
     def __call__(self, rows: RecordRows, terms: Sequence[FittedTerm]) -> Array:
         """Return the rows (K, R) of terms in a record, with their coefficients."""
-        model = self.models[self.places[rows.file]]
-        forces = RecordForces(rows)
-        before = forces.of_model(model)
-        size = float(np.linalg.norm(before)) or 1.0
-        plain = force_columns(rows, [t for t in terms if t.term.acts == "force"])
-        adding = iter(plain)
-        found = np.empty((len(terms), before.size))
-        for k, t in enumerate(terms):
-            if t.term.acts == "force":
-                own = next(adding)
-                length = float(np.linalg.norm(own))
-                step = _STEP * size / length if length > 0.0 else 1.0
-                more = FittedTerm(t.id, step * t.coefficient, t.shape)
-                whole = ForceModel((*model.terms, more))
-            else:
-                step = _STEP
-                whole = _grown(model, t, step)
-            with np.errstate(over="ignore", invalid="ignore"):  # of next to nothing a step is huge
-                found[k] = finite_slope((forces.of_model(whole) - before) / step)
-        return found
+        model, forces = self.models[rows.file], self.forces[rows.file]
+        found = np.empty((len(terms), rows.target.size))
+        adding = [k for k, t in enumerate(terms) if t.term.acts == "force"]
+        with np.errstate(over="ignore", invalid="ignore"):  # of next to nothing a step is huge
+            found[adding] = forces.passed_on(model, [terms[k] for k in adding])
+            if len(adding) < len(terms):
+                before = forces.of_model(model)
+            for k, t in enumerate(terms):
+                if t.term.acts != "force":
+                    found[k] = (forces.of_model(_grown(model, t, _STEP)) - before) / _STEP
+        return finite_slope(found)
 
 
 def _grown(model: ForceModel, fitted: FittedTerm, step: float) -> ForceModel:

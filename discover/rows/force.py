@@ -15,6 +15,9 @@ from models.motion import Motion
 from models.terms.between_tests import ONLY
 from models.terms.term import Changed, ForceOf
 
+_STEP = 1e-3  # of a record's force, over which the slope of what is passed on is taken
+_NUMBERS = 2**18  # of what units add, that are kept of one record; of short ones
+_UNITS = 96  # as many units at least
 _INNER = 16  # forces behind an effect that are kept, as fits change the outermost alone too
 _TOTALS = 4  # sums of terms that are kept: a joint's device is fitted once to each
 
@@ -22,6 +25,13 @@ _TOTALS = 4  # sums of terms that are kept: a joint's device is fitted once to e
 def drifts(fitted: FittedTerm) -> bool:
     """Tell whether a term changes while a record lasts: it then has no steady cycle."""
     return fitted.term.remembers(fitted.shape) == "time"
+
+
+def unit(fitted: FittedTerm, motion: Motion) -> Array:
+    """Return what a unit of a term adds on a motion, (N,) in N over the coefficient's unit."""
+    if fitted.term.column is None:
+        raise ValueError(f"{fitted.id} adds no force")
+    return fitted.term.column(motion, fitted.shape)
 
 
 def steady(model: ForceModel) -> ForceModel:
@@ -101,10 +111,10 @@ class _Kept(Changed):
 class RecordForces:
     """Models' rows in one record. What a unit of a term adds is kept, the latest of them."""
 
-    def __init__(self, rows: RecordRows, *, most: int = 96) -> None:
+    def __init__(self, rows: RecordRows) -> None:
         self.rows = rows
         self._motion = rows.motion if rows.cycle is None else rows.cycle
-        self._most = most
+        self._most = max(_NUMBERS // self._motion.displacement.size, _UNITS)
         self._units: dict[Hashable, Array] = {}
         self._totals: dict[Hashable, Array] = {}
         self._inner: dict[Hashable, Array] = {}
@@ -112,14 +122,42 @@ class RecordForces:
     def of_model(self, model: ForceModel) -> Array:
         """Return a model's rows (R,)."""
         whole = self._steady(model)
-        if self.rows.cycle_rows is None:
-            return self.rows.of_motion(whole)
-        result = np.asarray(whole @ self.rows.cycle_rows)
-        if any(drifts(t) for t in model.terms):
+        result = self._rows_of(whole)
+        if self._drifts(*model.terms):
             motion = self.rows.motion
             here = at_moments(whole, motion.time, self.rows.observation.frequency)
             result = result + self.rows.of_motion(_drifting(model, motion, here))
         return result
+
+    def passed_on(self, model: ForceModel, terms: Sequence[FittedTerm]) -> Array:
+        """Return the rows (K, R) of terms that add a force, as changes in a model pass them on.
+
+        Parameters
+        ----------
+        model : ForceModel
+            What is changed and what changes it: rows are the slopes there.
+        terms : sequence of FittedTerm
+            K of them, with their coefficients.
+        """
+        before, drifting = self._steady(model), self._drifts(*model.terms)
+        grown = np.zeros((len(terms), before.size))
+        others: list[tuple[int, float, FittedTerm]] = []
+        for k, t in enumerate(terms):
+            slow = self._drifts(t)
+            own = _size(unit(t, self.rows.motion) if slow else self._unit(t))
+            own *= abs(t.coefficient)
+            step = _STEP * (_size(before) or 1.0) / own if own > 0.0 else 1.0
+            more = FittedTerm(t.id, step * t.coefficient, t.shape)
+            if slow or drifting:
+                others.append((k, step, more))
+            else:
+                grown[k] = (self._steady(model, more) - before) / step
+        found = self._rows_of(grown)
+        if others:
+            start = self.of_model(model)
+            for k, step, more in others:
+                found[k] = (self.of_model(ForceModel((*model.terms, more))) - start) / step
+        return found
 
     def changes(self, model: ForceModel, terms: Sequence[FittedTerm]) -> Array:
         """Return the rows (K, R) of changes of motion or force, each over its coefficient."""
@@ -133,13 +171,28 @@ class RecordForces:
                 found[k] = change
         return found
 
-    def _steady(self, model: ForceModel) -> Array:
-        """Return the force of what does not drift, on the cycle or at the samples."""
-        timed = self.rows.cycle is not None
-        kept = [t for t in model.terms if not (timed and drifts(t))]
+    def _drifts(self, *terms: FittedTerm) -> bool:
+        """Tell whether any of some terms has no steady cycle, on which the others are."""
+        return self.rows.cycle is not None and any(drifts(t) for t in terms)
+
+    def _rows_of(self, whole: Array) -> Array:
+        """Return the rows (..., R) of forces (..., G) that are steady, or (..., M) of samples."""
+        if self.rows.cycle_rows is None:
+            return self.rows.of_motion(whole)
+        return np.asarray(whole @ self.rows.cycle_rows)
+
+    def _steady(self, model: ForceModel, more: FittedTerm | None = None) -> Array:
+        """Return the force of what does not drift, on the cycle or at the samples.
+
+        With one term more that adds a force, of which a unit is kept and no sum.
+        """
+        kept = [t for t in model.terms if not self._drifts(t)]
         adding = [t for t in kept if t.term.acts == "force"]
         changing = tuple(t for t in kept if t.term.acts != "force")
         total = self._total(adding)
+        if more is not None:
+            total = total + more.coefficient * self._unit(more)
+            adding.append(more)
         if not changing:
             return total
 
@@ -172,15 +225,17 @@ class RecordForces:
         key = (fitted.id, *fitted.shape.items())
         known = self._units.get(key)
         if known is None:
-            if fitted.term.column is None:
-                raise ValueError(f"{fitted.id} adds no force")
-            known = fitted.term.column(self._motion, fitted.shape)
+            known = unit(fitted, self._motion)
             _keep(self._units, key, known, most=self._most)
         return known
 
 
 def _key(terms: Sequence[FittedTerm]) -> Hashable:
     return tuple((t.id, t.coefficient, *t.shape.items()) for t in terms)
+
+
+def _size(force: Array) -> float:
+    return float(np.sqrt(np.mean(force**2)))
 
 
 def _keep(known: dict[Hashable, Array], key: Hashable, value: Array, *, most: int) -> None:

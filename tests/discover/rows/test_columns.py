@@ -23,7 +23,7 @@ def behind(rows, *terms):
         FittedTerm("viscous-damping", 800.0),
         FittedTerm("sensor-gain", 1e-3, GAIN),
     ))  # fmt: skip
-    return Behind({0: model}, {rows.file: 0})(rows, terms)
+    return Behind({rows.file: model}, {rows.file: RecordForces(rows)})(rows, terms)
 
 
 def test_a_column_passes_a_gain_as_a_small_force_does(rows):
