@@ -17,6 +17,7 @@ from discover.posterior.catalogue import trials_of
 from discover.posterior.climb import Place
 from discover.posterior.left_out import predicted_no_worse, unseen
 from discover.posterior.model import Composite
+from discover.posterior.own_curve import with_own_curve
 from discover.posterior.own_share import own_lines
 from discover.posterior.space import begun
 from discover.posterior.step import Candidate, Step, ordered
@@ -56,7 +57,8 @@ def grown(
     """Return what may join a model.
 
     Terms that only add a force come first. Those that are simulated in time, which takes long, are
-    tried where these leave more than noise and gain no more than twice as much in a straight line.
+    tried where these leave more than noise and gain no more than twice as much in a straight line;
+    beside friction in the curve that is most probable, as that is what they pass on.
 
     Parameters
     ----------
@@ -76,7 +78,8 @@ def grown(
         chosen = [i for i in ids if _simulated(i) is simulated]
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
-        found += _tried(assessor, now, chosen, len(ids), most, least)
+        start = with_own_curve(assessor, now) if simulated else now
+        found += _tried(assessor, start, chosen, len(ids), most, least)
     return weighed(found, now, assessor.seed)
 
 

@@ -13,7 +13,7 @@ from discover.rows import RecordForces
 from discover.rows.columns import Behind, finite_slope, force_columns, moved
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
-from models.terms import Scales
+from models.terms import Scales, Shape
 from models.terms.between_tests import ONLY
 
 _LATEST = 8  # rows of changed models that are kept a record: a slope changes few records
@@ -81,6 +81,14 @@ class Composite:
                     old.id, old.coefficient, {**old.shape, number.shape: float(value)}
                 )
             terms[number.term] = replace(terms[number.term], fitted=new)
+        return Composite(tuple(terms))
+
+    def with_shape(self, place: int, shape: Shape) -> Composite:
+        """Return the model with one term in another shape."""
+        terms = list(self.terms)
+        old = terms[place].fitted
+        new = FittedTerm(old.id, old.coefficient, {**old.shape, **shape})
+        terms[place] = replace(terms[place], fitted=new)
         return Composite(tuple(terms))
 
     def plus(self, *terms: FittedTerm) -> Composite:

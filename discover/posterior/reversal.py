@@ -11,8 +11,9 @@ from scipy.special import logsumexp
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.covariance import Sizes
 from discover.posterior.local import Local, fit_of, fitted, judged, local_of
-from discover.posterior.metric import Comparison, curve_given
+from discover.posterior.metric import curve_given
 from discover.posterior.model import Composite, Number
+from discover.posterior.own_curve import curves, each_alone
 from discover.posterior.own_share import own_share
 from discover.posterior.space import Part, Space
 from discover.regression.best_subset import best_subsets
@@ -185,8 +186,7 @@ def reversal_of(
     )  # fmt: skip
     one = FittedTerm(main.id, 1.0, main.shape)
     plain = space.sheet.stack([space.columns_of(r, [one]) for r in space.sheet.rows])[:, 0]
-    columns = space.columns[:, curve.columns]
-    whole = np.concatenate([columns[:, :1], columns[:, 1:] + columns[:, :1]], axis=1)
+    whole = curves(space, curve)
     departed = np.searchsorted(curve.columns, own.columns)
     total = main.coefficient * plain
     total = total + np.einsum("k,ukr->ur", departing, whole[:, departed] - whole[:, :1])
@@ -244,11 +244,7 @@ def _turning(
 
     Likelihoods are taken to a power, the share of the lines that say something of their own.
     """
-    stacked = np.concatenate([whole, left[:, None]], axis=1)
-    gram = Comparison(space, stacked, None).at(sizes).gram[0]
-    size = space.sheet.scale(whole)
-    grown = 1.0 + power * size**2 * np.maximum(np.diagonal(gram)[:-1], 1e-300)
-    values = 0.5 * (power * size * gram[:-1, -1]) ** 2 / grown - 0.5 * np.log(grown)
+    values = each_alone(space, sizes, left, whole, power)
     kinds: dict[str, list[int]] = {}
     widths = [_width(t) for t in curve.terms]
     for k, t in enumerate(curve.terms):
