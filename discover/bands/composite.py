@@ -35,18 +35,12 @@ def composite_of(
     joined : sequence of FittedTerm
         What the device has besides.
     """
-    placed: list[tuple[Part, tuple[float, ...] | None]] = []
-    for band, place in enumerate(banded.variants):
-        share = None if banded.bands == 1 else tuple(float(s) for s in banded.shares[band])
-        placed += [(part, share) for part in search.variants[place].parts]
-    own, friction = len(placed), search.friction
-    if friction is not None:
-        placed.append((friction, None))
-    found = _coefficients(search, banded, placed)
+    found = coefficients(search, banded)
     terms = [
         [Placed(begun(t, value), share) for t, value in zip(part.terms, values, strict=False)]
-        for (part, share), values in zip(placed, found, strict=True)
+        for part, share, values in found
     ]
+    own = len(terms) - int(search.friction is not None)
     shared = [t[0] for t in terms[own:]]
     return Composite((*chain(*terms[:own]), *map(Placed, joined), *shared))
 
@@ -66,10 +60,19 @@ def as_it_was(model: Composite, before: Composite) -> Composite | None:
     return Composite(tuple(replace(p, fitted=next(values[p.fitted.id])) for p in model.terms))
 
 
-def _coefficients(
-    search: BandSearch, banded: Banded, placed: Sequence[tuple[Part, tuple[float, ...] | None]]
-) -> list[Array]:
-    """Return the most probable coefficients of each part's columns, signs aside."""
+def coefficients(
+    search: BandSearch, banded: Banded
+) -> list[tuple[Part, tuple[float, ...] | None, Array]]:
+    """Return each band's best parts, then friction: share in units, most probable coefficients.
+
+    Signs aside; of a part's terms first, then of its slopes.
+    """
+    placed: list[tuple[Part, tuple[float, ...] | None]] = []
+    for band, place in enumerate(banded.variants):
+        share = None if banded.bands == 1 else tuple(float(s) for s in banded.shares[band])
+        placed += [(part, share) for part in search.variants[place].parts]
+    if search.friction is not None:
+        placed.append((search.friction, None))
     if not placed:
         return []
     space, ones = search.space, np.ones(len(search.space.sheet.units))
@@ -83,4 +86,5 @@ def _coefficients(
     gram = Comparison(space, whole, None).at(banded.place.sizes(space.own_unit)).gram[0]
     mean = solved(gram[:-1, :-1], gram[:-1, -1], spread, np.zeros(spread.size), 0.0).mean
     ends = np.cumsum([part.columns.size for part, _ in parts])
-    return np.split(mean, ends[:-1])[: len(placed)]
+    values = np.split(mean, ends[:-1])
+    return [(part, share, own) for (part, share), own in zip(placed, values, strict=False)]

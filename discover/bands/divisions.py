@@ -17,8 +17,9 @@ FEWEST = 2
 Brackets = tuple[tuple[float, float], ...]
 """Coordinates of the units beside each boundary, in rising order."""
 
-_THERE = 0.5
-"""Share of a unit that is in a band, from which the unit counts as one of it."""
+_THERE = 0.9
+"""Share of a unit that is in a band, from which the unit counts as one of it: beyond a gradual
+change. A change that no record is beyond on either side is no boundary, but a sum of two laws."""
 _PLACES = 9  # of a gradual change that are tried, even in the logarithm
 _WIDTHS = (0.6, 1.2, 2.4)
 """Of gradual changes that are weighed beside sharp ones: finer ones follow around the best."""

@@ -12,8 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from discover.bands.dividing import searched
 from discover.bands.found import Device, Found, Joined, ids_of
-from discover.bands.search import Banded, BandSearch, searched
+from discover.bands.search import Banded, BandSearch
 from discover.bands.variants import variants_of
 from discover.posterior.assess import Assessed
 from discover.posterior.climb import Place
@@ -44,7 +45,8 @@ def searched_with(
         space, variants, curve if device.with_friction else None, tuple(parts),
         {name: values[name] for name in device.coordinates},
     )
-    bands = [held(device, search, b) for b in searched(search, place, bands=device.bands)]
+    search, found = searched(search, place, bands=device.bands)
+    bands = [held(device, search, b) for b in found]
     space.forget()
     before = None if behind is None else behind.model
     way = Found(device, bands[-1], tuple(bands), search, tuple(joined), None, before)

@@ -42,8 +42,8 @@ _CLOSE = 0.01  # of a coordinate's logarithm, below which gradual divisions are 
 class Banded:
     """A number of bands, where they end and what holds in each."""
 
-    coordinate: str
-    """Along which they lie; "" for one band."""
+    cut: Cut
+    """The last one."""
     shares: Array
     """(B, U) how much of each unit is in each band."""
     brackets: Brackets
@@ -62,8 +62,18 @@ class Banded:
     """True where all but noise may be explained."""
     at_place: float
     """Log evidence at these sizes and this scale, nats."""
-    gradual: bool = False
-    """True where the last boundary is."""
+    others: float
+    """Nats: log evidence of all divisions, with their priors, over this one's without."""
+
+    @property
+    def coordinate(self) -> str:
+        """Along which they lie; "" for one band."""
+        return self.cut.coordinate
+
+    @property
+    def gradual(self) -> bool:
+        """True where the last boundary is."""
+        return self.cut.width > 0.0
 
     @property
     def bands(self) -> int:
@@ -147,10 +157,13 @@ class BandSearch:
 
     def only(self, variants: Sequence[int]) -> BandSearch:
         """Return the search with some variants only."""
+        return self.with_variants([self.variants[v] for v in variants])
+
+    def with_variants(self, variants: Sequence[Variant]) -> BandSearch:
+        """Return the search with other variants."""
         return BandSearch(
-            self.space, tuple(self.variants[v] for v in variants), self.friction, self.extras,
-            self.coordinates,
-        )  # fmt: skip
+            self.space, tuple(variants), self.friction, self.extras, self.coordinates
+        )
 
     def one_band(self, start: Place) -> Banded:
         """Return what holds where all units are one band."""
@@ -200,40 +213,57 @@ class BandSearch:
             if now.coordinate in ("", name)
         }
 
+    def again(self, now: Banded) -> Banded:
+        """Return a division with its structures as they are in this search, its sizes climbed."""
+        way = Way(now.cut, now.shares, now.brackets, np.array(now.variants), now.others)
+        known, place = self._climbed(way, now.place)
+        return self._stated(way, known, place)
+
     def _banded(
         self, ways: Divisions, now: Banded | None, start: Indices, place: Place
     ) -> Banded:
         """Return the best of ways to divide what there is now, its sizes climbed."""
         scale = self.one(place, ways.shares[0], start[0])[1]
         best = Way(ways.cuts[0], ways.shares[0], ways.brackets[0], start[0], 0.0)
-        alone: dict[Place, tuple[float, int, Divided]] = {}
+        known: dict[Place, tuple[float, int, Divided]] = {}
         for _ in range(_ROUNDS):
             if now is not None:
                 best = self._best(ways, now, start, place, scale)
-            alone = {}
-            there = climb(partial(self._seen, best, alone), place)
-            scale = alone[there][1]
+            known, there = self._climbed(best, place)
+            scale = known[there][1]
             if there == place:
                 break
             place = there
-        self._seen(best, alone, self.space.quiet)
-        last = self.one(place, best.shares, best.variants)[2]
-        best_alone = alone[place][0]
-        total = float(logsumexp([v for v, _, _ in alone.values()])) - best_alone
-        total += float(last.value[0]) if now is not None else best_alone
-        variants = [self.of_best_core(own) for own in last.by_variant[0]]
+        return self._stated(best, known, place)
+
+    def _climbed(
+        self, way: Way, place: Place
+    ) -> tuple[dict[Place, tuple[float, int, Divided]], Place]:
+        """Return a way's answers at the sizes that were looked at, and the most probable sizes."""
+        known: dict[Place, tuple[float, int, Divided]] = {}
+        return known, climb(partial(self._seen, way, known), place)
+
+    def _stated(
+        self, way: Way, known: dict[Place, tuple[float, int, Divided]], place: Place
+    ) -> Banded:
+        """Return a way with all variants in each band, at the most probable sizes."""
+        self._seen(way, known, self.space.quiet)
+        last = self.one(place, way.shares, way.variants)[2]
+        best = known[place][0]
+        total = float(logsumexp([v for v, _, _ in known.values()])) - best
+        total += float(last.value[0]) if way.shares.shape[0] > 1 else best
         return Banded(
-            coordinate=best.cut.coordinate,
-            shares=best.shares,
-            brackets=best.brackets,
-            variants=tuple(variants),
+            cut=way.cut,
+            shares=way.shares,
+            brackets=way.brackets,
+            variants=tuple(self.of_best_core(own) for own in last.by_variant[0]),
             by_variant=last.by_variant[0],
-            value=total + best.others,
+            value=total + way.others,
             place=place,
-            scale=scale,
-            quiet=is_quiet({p: v for p, (v, _, _) in alone.items()}),
+            scale=known[place][1],
+            quiet=is_quiet({p: v for p, (v, _, _) in known.items()}),
             at_place=float(last.value[0]),
-            gradual=best.cut.width > 0.0,
+            others=way.others,
         )
 
     def _best(
@@ -278,29 +308,3 @@ class BandSearch:
             one_band = way.shares.shape[0] == 1
             known[place] = self.one(place, way.shares, way.variants, others=one_band)
         return known[place][0]
-
-
-def searched(
-    search: BandSearch, start: Place | None = None, *, bands: int | None = None
-) -> list[Banded]:
-    """Return the best division for every number of bands, as long as one more is more probable.
-
-    Parameters
-    ----------
-    search : BandSearch
-        Of the records.
-    start : Place, optional
-        Sizes to start from.
-    bands : int, optional
-        Number that is asked for; None lets the evidence choose.
-    """
-    found = [search.one_band(search.space.start if start is None else start)]
-    most = MOST_BANDS if bands is None else bands
-    while found[-1].bands < most:
-        more = search.divided_again(found[-1], asked=bands is not None)
-        if more is None:
-            break
-        found.append(more)
-        if bands is None and more.value < found[-2].value:
-            break
-    return found

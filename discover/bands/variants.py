@@ -69,11 +69,15 @@ def _shaped(
     if high - low < 1e-9:
         return parts_of(space, [(unit(term, {parameter.name: low}),)])
     values = list(shape_grid(bounds, STEP))
-    width = (high - low) / len(values) / float(np.sqrt(12.0))
-    return parts_of(
+    step = (high - low) / len(values)
+    found = parts_of(
         space, [(unit(term, {parameter.name: v}),) for v in values],
-        [((parameter.name, width),)] * len(values),
+        [((parameter.name, step / float(np.sqrt(12.0))),)] * len(values),
     )  # fmt: skip
+    return [
+        replace(p, within=((v - 0.5 * step, v + 0.5 * step),))
+        for p, v in zip(found, values, strict=True)
+    ]
 
 
 def as_choice(variants: Sequence[Variant]) -> tuple[Choice, Indices]:

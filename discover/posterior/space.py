@@ -43,6 +43,8 @@ class Part:
     """Sizes over which it is averaged."""
     slopes: tuple[str, ...] = ()
     """Shape parameters whose slopes are the columns after those of the terms."""
+    within: tuple[tuple[float, float], ...] = ()
+    """Bounds of each: beyond them another part stands for the term."""
     log_prior: float = 0.0
     """Nats, of its shape among those of the same term."""
 

@@ -11,7 +11,6 @@ from discover.rows.force import RecordForces, unit
 from discover.rows.record_rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm, ForceModel
-from models.motion import Motion
 from models.terms import Scales, Term
 
 _STEEPEST = 1e100  # N over the unit of a coefficient, or of a shape parameter
