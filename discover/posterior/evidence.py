@@ -9,6 +9,9 @@ from scipy.special import log_ndtr
 
 from models.checks import Array, Indices
 
+_LEAST, _MOST = 0.5, np.finfo(float).eps ** -2.0
+"""Of one and a column's product with itself: below the first it is negative but for rounding errors,
+above the second these are all that is left of ordinary columns beside it."""
 _LOG_2 = float(np.log(2.0))  # nats: a coefficient of known sign has half the places
 _LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))  # of the normal density
 
@@ -61,7 +64,19 @@ def solved(
         a normal one cut off at zero.
     log_normal : float or ndarray, shape (...)
         Log density of the measured force without any column.
+
+    Returns
+    -------
+    Solved
+        With no evidence, -inf, for a model whose columns are so large that rounding errors are all
+        that is left of the others.
     """
+    own = 1.0 + spread**2 * np.diagonal(gram, axis1=-2, axis2=-1)
+    lost = np.any((own < _LEAST) | (own > _MOST), axis=-1)
+    if np.any(lost):
+        gram = np.where(lost[..., None, None], 0.0, gram)
+        side = np.where(lost[..., None], 0.0, side)
+        log_normal = np.where(lost, -np.inf, log_normal)
     factor = root_of(gram, spread)
     inverse = np.linalg.inv(factor)
     half = np.einsum("...ij,...j->...i", inverse, spread * side)

@@ -144,6 +144,8 @@ def fitted(
     best = _density(space, here, sizes, curve)
     for _ in range(iterations):
         answer = judged(here, here.beside(space, curve), sizes)
+        if answer.value == -np.inf:
+            return here
         wanted = _within_bounds(here, answer, space.scales)
         promised = _promised(here, answer, wanted)
         share, there, value = 1.0, here, best

@@ -117,3 +117,13 @@ def test_columns_that_rounding_makes_worse_than_alike_are_still_factored():
     assert np.all(np.diag(factor) >= 1.0 - 1e-6)
     np.testing.assert_array_equal(factor, np.tril(factor))
     np.testing.assert_allclose(factor @ factor.T, np.eye(4) + gram, rtol=1e-9, atol=1e-6 * 1e9)
+
+
+@pytest.mark.parametrize("wild", [-1e22, 1e40])
+def test_beside_a_column_of_which_rounding_leaves_nothing_there_is_no_evidence(wild):
+    gram = np.stack([np.eye(3), np.diag([1.0, 1.0, wild])])
+    side = np.array([[1.0, 2.0, 3.0], [1.0, 2.0, 1e25]])
+    found = solved(gram, side, np.ones((2, 3)), np.zeros((2, 3)), np.zeros(2))
+    assert np.isfinite(found.log_evidence[0])
+    assert found.log_evidence[1] == -np.inf
+    assert np.all(np.isfinite(found.mean))
