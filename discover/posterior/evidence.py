@@ -10,7 +10,7 @@ from scipy.special import log_ndtr
 from models.checks import Array, Indices
 
 _LEAST, _MOST = 0.5, np.finfo(float).eps ** -2.0
-"""Of one and a column's product with itself: below the first it is negative but for rounding errors,
+"""Of one and a column's product with itself: below the first it is no product but rounding errors,
 above the second these are all that is left of ordinary columns beside it."""
 _LOG_2 = float(np.log(2.0))  # nats: a coefficient of known sign has half the places
 _LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))  # of the normal density

@@ -40,15 +40,12 @@ class _Weighed:
 
     gain: Gain
     """That."""
-    most: float
-    """The greatest gain of any trial at them, nats."""
+    place: Place
+    """These sizes."""
     before: float
     """Log evidence of the model as it is at them, nats; -inf where that was not looked at."""
-
-    @property
-    def behind(self) -> float:
-        """By how much the trial gains less than the greatest, nats."""
-        return self.most - self.gain.value
+    beside: Assessed
+    """The model."""
 
 
 def grown(
@@ -57,8 +54,9 @@ def grown(
     """Return what may join a model.
 
     Terms that only add a force come first. Those that are simulated in time, which takes long, are
-    tried where these leave more than noise and gain no more than twice as much in a straight line;
-    beside friction in the curve that is most probable, as that is what they pass on.
+    tried where these leave more than noise and gain no more than twice as much in a straight line.
+    What changes the motion or the force is weighed beside friction in the curve that is most
+    probable.
 
     Parameters
     ----------
@@ -73,13 +71,13 @@ def grown(
         fitted.
     """
     found = [Candidate("", now.value, now)]
+    curved = with_own_curve(assessor, now)
     most: dict[Place, float] = {}
     for simulated in (False, True):
         chosen = [i for i in ids if _simulated(i) is simulated]
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
-        start = with_own_curve(assessor, now) if simulated else now
-        found += _tried(assessor, start, chosen, len(ids), most, least)
+        found += _tried(assessor, (now, curved), chosen, len(ids), most, least)
     return weighed(found, now, assessor.seed)
 
 
@@ -141,7 +139,7 @@ def chosen_again(
             continue
         more = log_prior - trials.entries[0].log_prior if identifier == own[0].id else 0.0
         starts = [
-            w.gain for w in _weighed(assessor, less, trials, {}).get(identifier, [])
+            w.gain for w in _weighed(assessor, less, trials).get(identifier, [])
             if w.gain.value + more > least
             and (identifier, _choice(w.gain.trial.terms)) != as_it_is
         ]
@@ -175,33 +173,47 @@ def _simulated(identifier: str) -> bool:
 
 
 def _tried(
-    assessor: Assessor, now: Assessed, ids: Sequence[str], among: int, most: dict[Place, float],
-    least: float,
+    assessor: Assessor, beside: tuple[Assessed, Assessed], ids: Sequence[str], among: int,
+    most: dict[Place, float], least: float,
 ) -> list[Candidate]:
-    """Return some terms beside the model; `most` is kept, what any has gained at some sizes."""
-    coarse = assessor.evaluator.coarse
-    trials = trials_of(now.space.scales, coarse, ids, now.model, among=among)
-    by_id = _weighed(assessor, now, trials, most)
+    """Return some terms beside the model as it is, or with friction's own curve.
+
+    The first for those that add a force, the second for those that change it. `most` is kept, what
+    any has gained at some sizes.
+    """
+    coarse, now = assessor.evaluator.coarse, beside[0]
+    by_id: dict[str, list[_Weighed]] = {}
+    for model, acting in zip(beside, (True, False), strict=True):
+        own = [i for i in ids if (TERMS[i].acts == "force") is acting]
+        trials = trials_of(model.space.scales, coarse, own, model.model, among=among)
+        by_id |= _weighed(assessor, model, trials)
+    for weighed_one in (w for one in by_id.values() for w in one):
+        place, value = weighed_one.place, weighed_one.gain.value
+        most[place] = max(most.get(place, -np.inf), value)
+
+    def behind(w: _Weighed) -> float:
+        """Return by how much a trial gains less than any at these sizes, nats."""
+        return most[w.place] - w.gain.value
+
+    for one in by_id.values():
+        one.sort(key=behind)
     found: list[Candidate] = []
-    for rank, one in enumerate(sorted(by_id.values(), key=lambda own: own[0].behind)):
-        gain = one[0].gain
+    for rank, one in enumerate(sorted(by_id.values(), key=lambda own: behind(own[0]))):
+        gain, model = one[0].gain, one[0].beside
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
-        worth = any(w.gain.value >= max(_HOPELESS, near * w.most - _NATS) for w in one)
+        worth = any(w.gain.value >= max(_HOPELESS, near * most[w.place] - _NATS) for w in one)
         enough = np.isneginf(least) or any(w.before + w.gain.value / _HALF >= least for w in one)
         if rank >= _NAMES or not worth or not enough:
             found.append(Candidate(gain.trial.id, now.value + min(gain.value, 0.0), None))
         else:
-            found.append(_fitted(assessor, now, [w.gain for w in one]))
+            found.append(_fitted(assessor, model, [w.gain for w in one]))
     return found
 
 
-def _weighed(
-    assessor: Assessor, now: Assessed, trials: Trials, most: dict[Place, float]
-) -> dict[str, list[_Weighed]]:
-    """Return what trials gain in a straight line, by id, the nearest to the greatest gain first.
+def _weighed(assessor: Assessor, now: Assessed, trials: Trials) -> dict[str, list[_Weighed]]:
+    """Return what trials gain in a straight line, by id, those that gain most first.
 
     At the sizes that predict best, those of a model that leaves but noise, and the model's own.
-    `most` is kept, the greatest gain at each.
     """
     if not trials.entries:
         return {}
@@ -211,13 +223,9 @@ def _weighed(
     for place, local in {
         best.place: best.local, space.quiet: now.local, now.place: now.local
     }.items():
-        all_gains = gains(space, trials, local, place.sizes(space.own_unit), curve)
-        top = most[place] = max(most.get(place, -np.inf), all_gains[0].value)
         before = now.visited.get(place, -np.inf)
-        for gain in all_gains:
-            found.setdefault(gain.trial.id, []).append(_Weighed(gain, top, before))
-    for one in found.values():
-        one.sort(key=lambda w: w.behind)
+        for gain in gains(space, trials, local, place.sizes(space.own_unit), curve):
+            found.setdefault(gain.trial.id, []).append(_Weighed(gain, place, before, now))
     return found
 
 

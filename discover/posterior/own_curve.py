@@ -1,7 +1,7 @@
 """Friction as one curve: which alone is most probable, and a model whose friction it is.
 
-Departures from a curve add up to every other. But they are columns of the motion as it is: what a
-joint changes are the model's terms, and through it friction passes as the curve that its term has.
+Departures from a curve add up to every other. But they are columns of the motion as it is. What a
+joint or a sensor changes are the model's terms, and friction is changed as the curve of its term.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from discover.posterior.covariance import Sizes
 from discover.posterior.metric import Comparison
 from discover.posterior.space import Part, Space
 from models.checks import Array
+
+_BETTER = 1.0  # nats, by which a curve is to be more probable than the one that a model has
 
 
 def curves(space: Space, curve: Part) -> Array:
@@ -65,7 +67,9 @@ def with_own_curve(assessor: Assessor, assessed: Assessed) -> Assessed:
     space, whole = assessed.space, curves(assessed.space, curve)[:, own]
     left = space.sheet.target - assessed.local.force + placed.fitted.coefficient * whole[:, 0]
     sizes = assessed.place.sizes(space.own_unit)
-    best = own[int(each_alone(space, sizes, left, whole).argmax())]
-    if best == 0:
+    values = each_alone(space, sizes, left, whole)
+    best = int(values.argmax())
+    if values[best] < values[0] + _BETTER:
         return assessed
-    return assessor.assess(model.with_shape(at, curve.terms[best].shape), assessed.place)
+    turned = model.with_shape(at, curve.terms[own[best]].shape)
+    return assessor.assess(turned, assessed.place)

@@ -13,7 +13,8 @@ from models.terms.scales import Scales
 from models.terms.term import ForceOf, Parameter, Shape, Start, Term
 
 _PROBES = (2e-4, 1e-2, 1e-1)
-"""rad of the fastest motion, by which a force is tried late: one that jumps changes in steps."""
+"""rad of the fastest motion, by which a force is tried late and early: one that jumps changes in
+steps, on one side of its jump or on the other."""
 
 Late = Callable[[float], Array]
 
@@ -63,9 +64,9 @@ def read_late(force: Array, time: Array, degree: int) -> Late:
 
 
 def starts(scales: Scales) -> list[Start]:
-    """Return a later sample, a low-pass, a number of samples, one value a test."""
+    """Return a later or earlier sample, a low-pass, a number of samples, one value a test."""
     probe = _PROBES[0] / scales.omega
-    sampled = [Start.one(p / scales.omega) for p in _PROBES]
+    sampled = [Start.one(side * p / scales.omega) for p in _PROBES for side in (1.0, -1.0)]
     if scales.sampling:
         sampled.append(Start.one(probe, sampling=scales.sampling))
     filtered = [Start.one(probe, filter_order=order) for order in (1.0, 2.0, 4.0)]
