@@ -17,7 +17,7 @@ from discover.posterior.catalogue import trials_of
 from discover.posterior.climb import Place
 from discover.posterior.left_out import predicted_no_worse, unseen
 from discover.posterior.model import Composite
-from discover.posterior.own_curve import with_own_curve
+from discover.posterior.own_curve import likely_curves, place_of, with_curve
 from discover.posterior.own_share import own_lines
 from discover.posterior.space import begun
 from discover.posterior.step import Candidate, Step, ordered
@@ -71,13 +71,14 @@ def grown(
         fitted.
     """
     found = [Candidate("", now.value, now)]
-    curved = with_own_curve(assessor, now)
+    turns = likely_curves(assessor, now)
+    curved = with_curve(assessor, now, turns[0]) if turns else now
     most: dict[Place, float] = {}
     for simulated in (False, True):
         chosen = [i for i in ids if _simulated(i) is simulated]
         if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
             continue
-        found += _tried(assessor, (now, curved), chosen, len(ids), most, least)
+        found += _tried(assessor, (now, curved), turns[1:], chosen, len(ids), most, least)
     return weighed(found, now, assessor.seed)
 
 
@@ -173,13 +174,13 @@ def _simulated(identifier: str) -> bool:
 
 
 def _tried(
-    assessor: Assessor, beside: tuple[Assessed, Assessed], ids: Sequence[str], among: int,
-    most: dict[Place, float], least: float,
+    assessor: Assessor, beside: tuple[Assessed, Assessed], turns: Sequence[FittedTerm],
+    ids: Sequence[str], among: int, most: dict[Place, float], least: float,
 ) -> list[Candidate]:
     """Return some terms beside the model as it is, or with friction's own curve.
 
-    The first for those that add a force, the second for those that change it. `most` is kept, what
-    any has gained at some sizes.
+    The first for those that add a force, the second for those that change it: with that curve, or
+    with others, `turns`. `most` is kept, what any has gained at some sizes.
     """
     coarse, now = assessor.evaluator.coarse, beside[0]
     by_id: dict[str, list[_Weighed]] = {}
@@ -206,7 +207,8 @@ def _tried(
         if rank >= _NAMES or not worth or not enough:
             found.append(Candidate(gain.trial.id, now.value + min(gain.value, 0.0), None))
         else:
-            found.append(_fitted(assessor, model, [w.gain for w in one]))
+            others = turns if model is beside[1] else ()
+            found.append(_fitted(assessor, model, [w.gain for w in one], others))
     return found
 
 
@@ -229,17 +231,24 @@ def _weighed(assessor: Assessor, now: Assessed, trials: Trials) -> dict[str, lis
     return found
 
 
-def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candidate:
-    """Return a term beside the model, fitted from its best shapes."""
+def _fitted(
+    assessor: Assessor, now: Assessed, starts: Sequence[Gain], turns: Sequence[FittedTerm] = ()
+) -> Candidate:
+    """Return a term beside the model, fitted from its best shapes, and from curves of friction."""
     evaluator = assessor.evaluator.coarse
     start = now.place.towards(assessor.space.quiet)
     chosen = [
         (gain, model) for gain in _starting(starts)
         if np.all(np.isfinite(evaluator.force(model := now.model.plus(*_begun(gain)))))
     ]
-    if len(chosen) > 1:
-        glanced = [(g, *assessor.glance(m, start, iterations=FEW_STEPS)) for g, m in chosen]
-        glanced.sort(key=lambda b: b[2] + b[0].trial.log_prior, reverse=True)
+    if len(chosen) > 1 or (chosen and turns):
+        glanced = _glanced(assessor, chosen, start)
+        if turns and assessor.friction is not None:
+            gain = glanced[0][0]
+            model = now.model.plus(*_begun(gain))
+            at = place_of(assessor.friction, model)
+            turned = [(gain, model.with_shape(at, t.shape)) for t in turns]
+            glanced = sorted(glanced + _glanced(assessor, turned, start), key=_rank)
         chosen = [(g, m) for g, m, _ in glanced]
     for gain, model in chosen:
         if np.all(np.isfinite(assessor.evaluator.force(model))):  # on the fine rows too
@@ -250,6 +259,19 @@ def _fitted(assessor: Assessor, now: Assessed, starts: Sequence[Gain]) -> Candid
             return found if first.quiet else _turned(assessor, found, starts)
     # At the sizes at which it would gain most it has no finite force.
     return Candidate(starts[0].trial.id, now.value, None)
+
+
+def _glanced(
+    assessor: Assessor, chosen: Sequence[tuple[Gain, Composite]], start: Place
+) -> list[tuple[Gain, Composite, float]]:
+    """Return models after a few steps of a fit, with their log evidence, the best first."""
+    return sorted(
+        ((g, *assessor.glance(m, start, iterations=FEW_STEPS)) for g, m in chosen), key=_rank
+    )
+
+
+def _rank(glanced: tuple[Gain, Composite, float]) -> float:
+    return -glanced[2] - glanced[0].trial.log_prior
 
 
 def _turned(assessor: Assessor, found: Candidate, starts: Sequence[Gain]) -> Candidate:

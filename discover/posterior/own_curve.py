@@ -1,4 +1,4 @@
-"""Friction as one curve: which alone is most probable, and a model whose friction it is.
+"""Friction as one curve: which alone are most probable, and a model whose friction is one of them.
 
 Departures from a curve add up to every other. But they are columns of the motion as it is. What a
 joint or a sensor changes are the model's terms, and friction is changed as the curve of its term.
@@ -11,8 +11,10 @@ import numpy as np
 from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.covariance import Sizes
 from discover.posterior.metric import Comparison
+from discover.posterior.model import Composite
 from discover.posterior.space import Part, Space
 from models.checks import Array
+from models.constitutive import FittedTerm
 
 _BETTER = 1.0  # nats, by which a curve is to be more probable than the one that a model has
 
@@ -50,26 +52,40 @@ def each_alone(space: Space, sizes: Sizes, left: Array, whole: Array, power: flo
     return np.asarray(gained - 0.5 * np.log(grown))
 
 
-def with_own_curve(assessor: Assessor, assessed: Assessed) -> Assessed:
-    """Return a model whose friction is the curve that alone is most probable.
+def likely_curves(assessor: Assessor, assessed: Assessed) -> list[FittedTerm]:
+    """Return friction's most probable curve of each kind, of speed and of path, the best first.
 
-    As it was where that is its curve already, where a fit may change the curve, where the model
-    has no friction of that kind, or where it is held.
+    None where it has a curve that a fit may change, where it is held, or where the model has no
+    friction of that kind.
     """
     curve, model = assessor.friction, assessed.model
     if curve is None or assessed.curve is None:
-        return assessed
-    at = next(i for i, p in enumerate(model.terms) if p.fitted.id == curve.id)
-    placed = model.terms[at]
+        return []
+    placed = model.terms[place_of(curve, model)]
     if placed.held or any(placed.fitted.shape.values()):
-        return assessed
+        return []
     own = [k for k, t in enumerate(curve.terms) if t.id == curve.id]
     space, whole = assessed.space, curves(assessed.space, curve)[:, own]
     left = space.sheet.target - assessed.local.force + placed.fitted.coefficient * whole[:, 0]
-    sizes = assessed.place.sizes(space.own_unit)
-    values = each_alone(space, sizes, left, whole)
-    best = int(values.argmax())
-    if values[best] < values[0] + _BETTER:
+    values = each_alone(space, assessed.place.sizes(space.own_unit), left, whole)
+    best: dict[str, FittedTerm] = {}
+    for k in np.argsort(-values):
+        if values[k] < values[0] + _BETTER and k > 0:
+            continue
+        fitted = curve.terms[own[k]]
+        best.setdefault(fitted.term.remembers(fitted.shape), fitted)
+    return list(best.values())
+
+
+def place_of(curve: Part, model: Composite) -> int:
+    """Return the place of friction among a model's terms."""
+    return next(i for i, p in enumerate(model.terms) if p.fitted.id == curve.id)
+
+
+def with_curve(assessor: Assessor, assessed: Assessed, fitted: FittedTerm) -> Assessed:
+    """Return a model whose friction has another curve."""
+    model, curve = assessed.model, assessor.friction
+    if curve is None or not any(fitted.shape.values()):
         return assessed
-    turned = model.with_shape(at, curve.terms[own[best]].shape)
+    turned = model.with_shape(place_of(curve, model), fitted.shape)
     return assessor.assess(turned, assessed.place)
