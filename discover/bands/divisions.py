@@ -20,6 +20,7 @@ Brackets = tuple[tuple[float, float], ...]
 _THERE = 0.9
 """Share of a unit that is in a band, from which the unit counts as one of it: beyond a gradual
 change. A change that no record is beyond on either side is no boundary, but a sum of two laws."""
+_ALIKE = 1e-3  # of a coordinate, by which units differ that are at one place: a rig's set point
 _PLACES = 9  # of a gradual change that are tried, even in the logarithm
 _WIDTHS = (0.6, 1.2, 2.4)
 """Of gradual changes that are weighed beside sharp ones: finer ones follow around the best."""
@@ -93,7 +94,7 @@ def sharp(coordinate: Array, *, fewest: int = FEWEST) -> tuple[Array, Array]:
     shares, brackets = [], []
     for position in range(fewest, order.size - fewest + 1):
         low, high = sorted_values[position - 1], sorted_values[position]
-        if high <= low * (1.0 + 1e-6):
+        if high <= low * (1.0 + _ALIKE):
             continue
         upper = np.zeros(order.size)
         upper[order[position:]] = 1.0

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from discover.bands.divisions import divided_again
+from discover.bands.divisions import divided_again, sharp
 from discover.bands.extras import searched_with
 from discover.study import StudyOptions
 from discover.study.prepare import prepare
@@ -45,3 +45,10 @@ def test_every_band_has_records_that_are_wholly_in_it(spread):
     widest = max(c.width for c in ways.cuts)
     assert widest < spread
 
+
+
+def test_no_boundary_lies_between_tests_of_one_set_point():
+    set_points = np.repeat([0.5, 1.0, 2.0, 4.0], 3)
+    measured = set_points * (1.0 + 2e-6 * np.arange(12))
+    _, brackets = sharp(measured)
+    assert np.round(brackets, 3).tolist() == [[0.5, 1.0], [1.0, 2.0], [2.0, 4.0]]
