@@ -17,6 +17,7 @@ _NAMES = {
     "stribeck-friction": "Stribeck friction",
     "force-offset": "force offset",
     "time-delay": "delay between channels",
+    "sensor-clipping": "force limit",
 }
 
 _PREFIXED = ("m", "m/s", "s")

@@ -31,6 +31,7 @@ _SHAPES = 3  # of each, from which a fit starts, the best of each discrete choic
 _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already
+_TOLD = 3.0  # nats, by which a discrete choice is to be more probable than the plain one
 _NATS = 20.0  # less than that; also of evidence, by which a term may lose beside a remainder
 
 
@@ -256,7 +257,8 @@ def _fitted(
             found = Candidate(
                 gain.trial.id, first.value + gain.trial.log_prior, first, len(gain.trial.terms)
             )
-            return found if first.quiet else _turned(assessor, found, starts)
+            found = found if first.quiet else _turned(assessor, found, starts)
+            return _plain_where_not_told(assessor, found, starts)
     # At the sizes at which it would gain most it has no finite force.
     return Candidate(starts[0].trial.id, now.value, None)
 
@@ -298,6 +300,26 @@ def _turned(assessor: Assessor, found: Candidate, starts: Sequence[Gain]) -> Can
     there = assessor.assess(other, assessed.place)
     turned = Candidate(found.id, there.value + gain.trial.log_prior, there, 1)
     return turned if turned.value > found.value else found
+
+
+def _plain_where_not_told(
+    assessor: Assessor, found: Candidate, starts: Sequence[Gain]
+) -> Candidate:
+    """Return a candidate with plain choices where the records don't tell others from them.
+
+    A slow force passes a filter as it passes a delay.
+    """
+    plain = next((g.trial for g in starts if _is_plain(g)), None)
+    assessed = found.assessed
+    if assessed is None or found.count != 1 or plain is None:
+        return found
+    model = assessed.model
+    own = _in_choice(model.terms[-1].fitted, plain.terms[0])
+    if all(own.shape[p.name] == model.terms[-1].fitted.shape[p.name] for p in own.term.parameters):
+        return found
+    other = assessor.assess(model.without(len(model.terms) - 1).plus(own), assessed.place)
+    plainer = Candidate(found.id, other.value + plain.log_prior, other, 1)
+    return plainer if plainer.value > found.value - _TOLD else found
 
 
 def _in_choice(fitted: FittedTerm, start: FittedTerm) -> FittedTerm:

@@ -15,7 +15,15 @@ from discover.study.options import StudyOptions
 from discover.study.prepare import Prepared, observation_findings
 from discover.study.result import Nuisance, StudyBand
 from discover.study.verdict import MOST_LEFT
-from discover.words import capitalize_first, listed, quantity, short_name, zero_possible
+from discover.words import (
+    capitalize_first,
+    listed,
+    percent,
+    quantity,
+    short_name,
+    significant,
+    zero_possible,
+)
 from models.cores import CORES
 from models.terms import TERMS
 
@@ -85,9 +93,10 @@ def _about_band(index: int, band: StudyBand, count: int) -> list[Finding]:
         result.append(
             Finding(
                 "warning",
-                f"{name}: beyond the noise {band.remainder.percent:.2g} % of the force"
-                f" ({low:.2g} to {high:.2g} %) is left that no term has, so what is stated is the"
-                " best of these models, and not the whole. `inerter gap` says what helps most.",
+                f"{name}: beyond the noise {percent(band.remainder.percent)} of the force"
+                f" ({significant(low, 3)} to {percent(high)}) is left that no term has, so what is"
+                " stated is the best of these models, and not the whole. `inerter gap` says what"
+                " helps most.",
             )
         )
     return result

@@ -1,4 +1,4 @@
-"""Sensor clipping: the force channel saturates."""
+"""Sensor clipping: the force channel saturates, or a relief valve opens: both limit the force."""
 
 import numpy as np
 
@@ -56,14 +56,15 @@ def starts(scales: Scales) -> list[Start]:
 
 
 def described(shape: Shape) -> str:
-    """Return which rail clips, where not both do."""
+    """Return on which side the limit is, where not on both."""
     return {1.0: "above only", -1.0: "below only"}.get(shape.get("side", 0.0), "")
 
 
 TERM = Term(
     "sensor-clipping",
     "1",
-    "the force channel saturates at the limit",
+    "the force channel saturates at the limit, or a valve opens there; the coefficient is the share"
+    " lost of what is beyond",
     transform=transform,
     acts="output",
     parameters=(
