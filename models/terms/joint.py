@@ -93,7 +93,7 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: JointDevic
         load = joint.half_load, joint.load_share, joint.load_side
         carried = carried_by_spring(motion, driven, rigid, joint.stiffness, joint.loss, load)
         return np.asarray(force + carried - rigid)
-    mass, viscous, quadratic, dry, reversal, spring, _, _ = driven
+    mass, viscous, quadratic, dry, reversal, _, spring, _, _ = driven
     v, x = motion.velocity, motion.displacement - motion.displacement.mean()
     most = min(max(_MOST_STEPS // x.size, _LEAST_INNER), _MOST_INNER)
     resistance = viscous + quadratic * float(np.abs(v).max())

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from models.checks import Array
 from models.motion import Motion
+from models.terms.hysteresis import bristle_state
 from models.terms.speed_curve import SpeedCurves, nodes_of
 from models.terms.term import ForceOf, unchanged
 
@@ -20,6 +21,7 @@ _RIDGE = 1e-12
 _LEAST_CURVE = 1e-5  # of the force's root mean square, of what else is a curve of speed
 _SLOW = 0.002  # of the greatest speed: dry friction reverses over no less in time stepping
 _REVERSALS = _SLOW * 1.6 ** np.arange(11.0)  # ranges of reversal tried, of the greatest speed
+_LENGTHS = 0.25 * 2.0 ** (-0.5 * np.arange(24.0))  # tried, over which it deflects, of half a stroke
 _BEYOND = 2.0  # ranges of reversal, where dry friction has reversed
 _MOST_KNOWN = 32  # devices of one motion that are kept
 _SEEN = 8192  # samples of a motion at least, by which a device is told where there are more
@@ -38,6 +40,8 @@ class JointDevice(NamedTuple):
     """Resistance, N."""
     reversal: float
     """m/s, range of speed over which the dry one reverses."""
+    length: float
+    """m over which it deflects instead before it slides; 0 where it does not."""
     spring: float
     """N/m."""
     curve: Array
@@ -51,7 +55,9 @@ class JointDevice(NamedTuple):
         v, x = motion.velocity, motion.displacement
         found = self.mass * motion.acceleration + self.viscous * v
         found = found + self.quadratic * v * np.abs(v) + self.spring * (x - x.mean())
-        if dry:
+        if dry and self.length > 0.0:
+            found = found + self.dry * bristle_state(motion, self.length)
+        elif dry:
             found = found + self.dry * np.tanh(v / self.reversal)
         if self.curve.size:
             found = found + np.interp(v, nodes_of(self.top), self.curve)
@@ -60,9 +66,10 @@ class JointDevice(NamedTuple):
     def for_spring(self) -> Self:
         """Return the same with as much of it dry as there is just beyond where that reverses.
 
-        Beside more, the curve would fall steeply there, which can't be stepped.
+        Beside more, the curve would fall steeply there, which can't be stepped. One that deflects
+        stays as it is.
         """
-        if not self.curve.size:
+        if not self.curve.size or self.length > 0.0:
             return self
         nodes, middle = nodes_of(self.top), self.curve.size // 2
         turned = np.tanh(nodes / self.reversal)
@@ -96,11 +103,12 @@ class _Resistances:
         scale = np.where(scale > 0.0, scale, 1.0)
         gram = columns @ columns.T / np.outer(scale, scale)
         solving = np.zeros((len(dry), 16, 4, 4))
-        for k, at in enumerate(_picked(len(dry))):
-            whole = gram[np.ix_(at, at)] + _RIDGE * np.eye(4)
-            for some in range(1, 16):
-                own = [i for i in range(4) if some >> i & 1]
-                solving[k, some][np.ix_(own, own)] = np.linalg.inv(whole[np.ix_(own, own)])
+        at = _picked(len(dry))
+        whole = gram[at[:, :, None], at[:, None]] + _RIDGE * np.eye(4)
+        for some in range(1, 16):
+            own = np.array([i for i in range(4) if some >> i & 1])
+            inverse = np.linalg.inv(whole[:, own[:, None], own])
+            solving[:, some, own[:, None], own] = inverse
         return cls(columns, scale, solving)
 
     def fitted(self, force: Array) -> tuple[Array, int]:
@@ -126,14 +134,14 @@ def _picked(frictions: int) -> NDArray[np.intp]:
 class _Known:
     """What was found out on a motion, which keeps it: one device is tried behind many joints."""
 
-    devices: dict[tuple[int, bool], tuple[ReferenceType[Array], JointDevice]] = field(
+    devices: dict[tuple[int, bool, bool], tuple[ReferenceType[Array], JointDevice]] = field(
         default_factory=dict
     )
-    """By the force's identity, and whether it came without a model."""
-    resistances: _Resistances | None = None
-    """None where they were not asked for."""
+    """By the force's identity, whether it came without a model, whether friction may deflect."""
+    resistances: dict[bool, _Resistances] = field(default_factory=dict)
+    """By whether friction may deflect."""
     curves: SpeedCurves | None = None
-    """Likewise."""
+    """None where they were not asked for."""
     still: Motion | None = None
     """The same speeds without displacement; None likewise, or where the motion is long."""
 
@@ -144,7 +152,9 @@ class _Known:
         return known
 
 
-def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> JointDevice:
+def device_of(
+    force: Array, motion: Motion, force_of: ForceOf | None = None, *, deflects: bool = False
+) -> JointDevice:
     """Return the device that fits a force best.
 
     None of its numbers but the spring's stiffness is negative; all are zero for a force that is
@@ -159,14 +169,17 @@ def device_of(force: Array, motion: Motion, force_of: ForceOf | None = None) -> 
     force_of : callable, optional
         The device: what is lost without displacement is its spring's. At one frequency nothing
         else tells a spring from a mass.
+    deflects : bool
+        Whether dry friction may deflect before it slides.
     """
-    devices, key = _Known.of(motion).devices, (id(force), force_of is None)
+    devices, key = _Known.of(motion).devices, (id(force), force_of is None, deflects)
     known = devices.get(key)
     if known is not None and known[0]() is force:
         return known[1]
-    stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of)
+    stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of, deflects=deflects)
     place = motion.displacement - motion.displacement.mean()
-    found = _device(force - stiffness * place, motion)._replace(spring=stiffness)
+    found = _device(force - stiffness * place, motion, deflects=deflects)
+    found = found._replace(spring=stiffness)
     if len(devices) >= _MOST_KNOWN:
         devices.pop(list(devices)[0], None)  # threads may be here too
     devices[key] = ref(force), found
@@ -187,42 +200,76 @@ def at_rest(motion: Motion) -> Motion:
     return still
 
 
-def _stiffness(force: Array, motion: Motion, force_of: ForceOf) -> float:
+def _stiffness(force: Array, motion: Motion, force_of: ForceOf, *, deflects: bool) -> float:
+    """Return the stiffness of what is lost without displacement, N/m.
+
+    Friction that deflects is lost too: of both that is the spring which fits best beside it.
+    """
     x = motion.displacement
     added = unchanged(force_of)
     whole = force if added is force_of else added(motion)
-    place = x - x.mean()
-    slope = float((whole - added(at_rest(motion))) @ place) / max(float(place @ place), 1e-300)
+    place, lost = x - x.mean(), whole - added(at_rest(motion))
+    slope = float(lost @ place) / max(float(place @ place), 1e-300)
+    if deflects and slope != 0.0 and np.isfinite(slope):
+        slope = _beside_friction(lost, motion, slope)
     return slope if np.isfinite(slope) else 0.0
 
 
-def _device(force: Array, motion: Motion) -> JointDevice:
+def _beside_friction(lost: Array, motion: Motion, alone: float) -> float:
+    """Return the stiffness of a spring that with friction which deflects fits a force best."""
+    seen = _seen(motion)
+    place = (motion.displacement - motion.displacement.mean())[seen]
+    sought = lost[seen] - lost[seen].mean()
+    states = _resistances_of(motion, deflects=True).columns[3 + _REVERSALS.size :]
+    across, own, spring = states @ place, np.einsum("tn,tn->t", states, states), place @ place
+    side, other = states @ sought, float(place @ sought)
+    determinant = own * spring - across**2
+    friction = (spring * side - across * other) / determinant
+    stiffness = (own * other - across * side) / determinant
+    gained = np.where(friction > 0.0, friction * side + stiffness * other, -np.inf)
+    best = int(gained.argmax())
+    return float(stiffness[best]) if gained[best] > alone * other else alone
+
+
+def _device(force: Array, motion: Motion, *, deflects: bool) -> JointDevice:
     """Return the device without a spring."""
     top = float(np.abs(motion.velocity).max())
     if not np.all(np.isfinite(force)) or top == 0.0:
-        return JointDevice(0.0, 0.0, 0.0, 0.0, 1.0, 0.0, _NONE, 1.0)
+        return JointDevice(0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, _NONE, 1.0)
     sought = force[_seen(motion)]
     sought = sought - sought.mean()
-    resistances = _resistances_of(motion)
+    resistances = _resistances_of(motion, deflects=deflects)
     found, best = resistances.fitted(sought)
     mass, viscous, quadratic, dry = (float(c) for c in found)
-    device = JointDevice(mass, viscous, quadratic, dry, _REVERSALS[best] * top, 0.0, _NONE, top)
+    speeds = _REVERSALS * top
+    reversal, length = float(speeds[min(best, speeds.size - 1)]), 0.0
+    if best >= speeds.size:
+        length = float(_lengths_of(motion)[best - speeds.size])
+    device = JointDevice(mass, viscous, quadratic, dry, reversal, length, 0.0, _NONE, top)
     left = sought - found @ resistances.columns[[0, 1, 2, 3 + best]]
     curve = _curves_of(motion).fitted(left)
     least = _LEAST_CURVE * float(np.sqrt(np.mean(sought**2)))
     return device._replace(curve=curve) if np.abs(curve).max() > least else device
 
 
-def _resistances_of(motion: Motion) -> _Resistances:
+def _resistances_of(motion: Motion, *, deflects: bool) -> _Resistances:
     """Return what devices on a motion are made of, evaluated once."""
-    known = _Known.of(motion)
-    if known.resistances is not None:
-        return known.resistances
-    top = float(np.abs(motion.velocity).max())
-    v, a = motion.velocity[_seen(motion)], motion.acceleration[_seen(motion)]
-    plain = np.stack([a, v, v * np.abs(v)])
-    known.resistances = _Resistances.of(plain, np.tanh(v / (_REVERSALS[:, None] * top)))
-    return known.resistances
+    known = _Known.of(motion).resistances
+    if deflects not in known:
+        top, seen = float(np.abs(motion.velocity).max()), _seen(motion)
+        v, a = motion.velocity[seen], motion.acceleration[seen]
+        plain = np.stack([a, v, v * np.abs(v)])
+        dry = np.tanh(v / (_REVERSALS[:, None] * top))
+        if deflects:
+            states = [bristle_state(motion, length)[seen] for length in _lengths_of(motion)]
+            dry = np.concatenate([dry, states])
+        known[deflects] = _Resistances.of(plain, dry)
+    return known[deflects]
+
+
+def _lengths_of(motion: Motion) -> Array:
+    """Return the lengths over which friction may deflect in a motion, m."""
+    return np.asarray(_LENGTHS * 0.5 * np.ptp(motion.displacement))
 
 
 def _curves_of(motion: Motion) -> SpeedCurves:

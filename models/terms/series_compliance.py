@@ -29,7 +29,8 @@ def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shap
         load_side=shape["side"],
         fluid_only=shape["inside"] > 0.0,
     )
-    return through_joint(force, motion, joint, device_of(force, motion, force_of))
+    device = device_of(force, motion, force_of, deflects=True)
+    return through_joint(force, motion, joint, device)
 
 
 def starts(scales: Scales) -> list[Start]:

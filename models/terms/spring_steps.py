@@ -5,6 +5,7 @@ import numpy as np
 from models.checks import Array
 from models.compiled import compiled
 from models.motion import Motion
+from models.terms.hysteresis import bristle_state
 from models.terms.joint_device import JointDevice
 from models.terms.stepping import (
     SETTLED,
@@ -14,6 +15,7 @@ from models.terms.stepping import (
     on_curve,
     passes_of,
     size_of,
+    with_deflection,
     with_friction,
 )
 
@@ -58,23 +60,26 @@ def carried_by_spring(
     inner = int(np.clip(np.ceil(fastest * motion.step / _STEP), 1, _MOST_INNER))
     loss = forgetting(loss, natural, motion)
     passes, start = passes_of(motion)
+    seal = float(bristle_state(motion, device.length)[start]) if device.length > 0.0 else 0.0
     return np.asarray(_step(
         x, v, motion.step, inner, mass, device.viscous, device.quadratic, device.dry,
-        device.reversal, device.spring, stiffness, 2.0 * loss * np.sqrt(stiffness * mass), *load,
-        passes, start, float(rigid[start]) / stiffness, device.curve, device.top,
+        device.reversal, device.length, seal, device.spring, stiffness,
+        2.0 * loss * np.sqrt(stiffness * mass), *load, passes, start,
+        float(rigid[start]) / stiffness, device.curve, device.top,
     ))  # fmt: skip
 
 
 @compiled(cache=True, fastmath=True, error_model="numpy", nogil=True)
 def _step(
     x: Array, v: Array, step: float, inner: int, mass: float, viscous: float, quadratic: float,
-    dry: float, slow: float, spring: float, stiffness: float, damping: float,
-    half_load: float, taken: float, load_side: float, passes: int, start: int, bent: float,
-    curve: Array, top: float,
+    dry: float, slow: float, length: float, seal: float, spring: float, stiffness: float,
+    damping: float, half_load: float, taken: float, load_side: float, passes: int, start: int,
+    bent: float, curve: Array, top: float,
 ) -> Array:
     """Return the force that the spring carries, (N,), mean over each sample's inner steps.
 
-    It begins at sample `start`, with the spring pressed in by `bent`. Speeds are half a step
+    It begins at sample `start`, with the spring pressed in by `bent` and friction at `seal` of what
+    slides. Speeds are half a step
     behind places. In a step the spring's force is that of places around it (Fox and Goodwin's
     weights, Newmark's of constant acceleration where it is too stiff for these), and what resists
     is that of the speed in its middle, or at its end where it is too fast to be followed.
@@ -126,7 +131,10 @@ def _step(
                 heavy = mass + late * pace_of + weight * squared
                 force += lossy * (pace - speed)
                 free = speed + h * (force - resisted) / heavy
-                now = with_friction(free, h * dry / heavy, slow)
+                if length > 0.0:
+                    now, seal = with_deflection(free, h * dry / heavy, seal, h / length)
+                else:
+                    now = with_friction(free, h * dry / heavy, slow)
                 total += force - (late * lossy + weight * h * stiff) * (now - speed)
                 speed = now
                 position += h * speed

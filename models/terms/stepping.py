@@ -15,6 +15,8 @@ SETTLED = 5e-4
 """Of the deepest bend and of the greatest speed, by which a cycle may end other than it began."""
 NEWTON = 2
 """Steps for the speed after friction."""
+NEARLY_STILL = 1e-4
+"""Of friction's length, below which a step's way is a straight part of its curve."""
 WIDE = 3.0
 """Ranges of reversal, beyond which friction is whole."""
 
@@ -121,3 +123,27 @@ def with_friction(free: float, brake: float, slow: float) -> float:
         slope = 1.0 + brake / slow * (1.0 - turned * turned)
         speed -= (speed + brake * turned - free) / slope
     return speed
+
+
+@compiled(cache=True, inline="always")
+def with_deflection(free: float, brake: float, state: float, pace: float) -> tuple[float, float]:
+    """Return the speed that friction leaves which deflects before it slides, and its new state.
+
+    By Dahl's equation, implicitly: the step takes the mean of the state over it. Friction takes off
+    `brake` (m/s) where it slides; a speed of one deflects it by `pace` of its length in the step.
+    """
+    speed = free - brake * state
+    for _ in range(NEWTON + 1):
+        side = 1.0 if speed > 0.0 else -1.0
+        way = abs(speed) * pace
+        if way > NEARLY_STILL:
+            kept = np.exp(-way)
+            share = (1.0 - kept) / way
+            slope = (kept - share) / way
+        else:
+            share, slope = 1.0 - 0.5 * way, -0.5
+        mean = side + (state - side) * share
+        steep = 1.0 + brake * (state - side) * slope * side * pace
+        speed -= (speed + brake * mean - free) / steep
+    side = 1.0 if speed > 0.0 else -1.0
+    return speed, side + (state - side) * np.exp(-abs(speed) * pace)

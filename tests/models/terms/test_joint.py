@@ -251,3 +251,40 @@ def test_a_damper_of_any_curve_behind_a_spring_is_that_of_an_integrator(power, y
     ).y[0]
     assert np.std(exact - force) > 0.06 * np.std(force)
     assert np.std(found - exact) < 0.01 * np.std(exact)
+
+
+@pytest.mark.parametrize(("frequency", "amplitude"), [(0.5, 0.003), (2.3, 0.0033), (5.0, 0.008)])
+def test_friction_that_deflects_is_behind_the_spring_too(frequency, amplitude):
+    """Dahl's equation beside a mass and a damper, against the differential equations."""
+    friction, length, stiffness, damping = 107.0, 1.9e-4, 4.5e6, 1200.0
+    model = ForceModel((
+        FittedTerm("inertia", MASS), FittedTerm("viscous-damping", VISCOUS),
+        FittedTerm("coulomb-friction", friction, {"presliding": length}),
+    ))  # fmt: skip
+    given = harmonic_motion(np.array([0.0, -1j * amplitude]), frequency, samples=2048)
+    omega = 2.0 * np.pi * frequency
+
+    def carried(t, state):
+        x, v = amplitude * np.sin(omega * t), amplitude * omega * np.cos(omega * t)
+        return stiffness * (x - state[0]) + damping * (v - state[1])
+
+    def rate(t, state):
+        _, speed, seal = state
+        resisted = VISCOUS * speed + friction * seal
+        return [
+            speed, (carried(t, state) - resisted) / MASS, (speed - abs(speed) * seal) / length
+        ]
+
+    period = 1.0 / frequency
+    steps = 6.0 * period + np.arange(2048) / 2048.0 * period
+    run = solve_ivp(
+        rate, (0.0, 7.0 * period), [0.0, amplitude * omega, 1.0], "LSODA", t_eval=steps,
+        rtol=1e-8, atol=1e-12,
+    )  # fmt: skip
+    exact = carried(run.t, run.y)
+    force = model.force(given)
+    loss = 0.5 * damping / np.sqrt(stiffness * MASS)
+    known = device_of(force, given, model.force, deflects=True)
+    found = through_joint(force, given, Joint(stiffness, loss), known)
+    assert np.std(found - exact) < 0.015 * np.std(exact)
+    assert np.std(found - exact) < 0.25 * np.std(force - exact)
