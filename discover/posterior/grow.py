@@ -200,8 +200,12 @@ def _tried(
     for one in by_id.values():
         one.sort(key=behind)
     found: list[Candidate] = []
-    for rank, one in enumerate(sorted(by_id.values(), key=lambda own: behind(own[0]))):
+    ranks = [0, 0]  # of those beside each model: beside another, others gain most
+    for one in sorted(by_id.values(), key=lambda own: behind(own[0])):
         gain, model = one[0].gain, one[0].beside
+        which = int(model is not now)
+        rank = ranks[which]
+        ranks[which] += 1
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
         worth = any(w.gain.value >= max(_HOPELESS, near * most[w.place] - _NATS) for w in one)
         enough = np.isneginf(least) or any(w.before + w.gain.value / _HALF >= least for w in one)
