@@ -16,8 +16,8 @@ from models.terms.between_tests import ONLY
 from models.terms.term import Changed, ForceOf
 
 _STEP = 1e-3  # of a record's force, over which the slope of what is passed on is taken
-_NUMBERS = 2**18  # of what units add, that are kept of one record; of short ones
-_UNITS = 96  # as many units at least
+_NUMBERS = 2**20  # of what units of terms add, that are kept of one record,
+_FEWEST, _MOST = 16, 256  # but so many units at least, and at most
 _INNER = 16  # forces behind an effect that are kept, as fits change the outermost alone too
 _TOTALS = 4  # sums of terms that are kept: a joint's device is fitted once to each
 
@@ -114,7 +114,7 @@ class RecordForces:
     def __init__(self, rows: RecordRows) -> None:
         self.rows = rows
         self._motion = rows.motion if rows.cycle is None else rows.cycle
-        self._most = max(_NUMBERS // self._motion.displacement.size, _UNITS)
+        self._most = min(max(_NUMBERS // self._motion.displacement.size, _FEWEST), _MOST)
         self._units: dict[Hashable, Array] = {}
         self._totals: dict[Hashable, Array] = {}
         self._inner: dict[Hashable, Array] = {}
