@@ -9,6 +9,7 @@ import pytest
 
 import discover
 from discover.cli import main
+from discover.cli.own_effects import asked_effects
 from models.checks import InputError
 from models.constitutive import SegmentedModel
 from models.terms import TERMS, load_term, own_terms
@@ -160,16 +161,23 @@ def test_two_own_effects_are_told_apart(tmp_path, file):
 
 
 @pytest.mark.parametrize(
-    "arguments",
+    ("only", "files", "named"),
     [
-        ["--effect-file", "{file}", "--jobs", "2"],
-        ["--effects", "coulomb-friction, {file}"],
-        ["--effects", "coulomb-friction", "--effect-file", "{file}"],
-        ["--effects", "magnetic-detent", "--effect-file", "{file}"],
+        (None, ("{file}",), None),
+        (("coulomb-friction", "{file}"), (), ("coulomb-friction", "magnetic-detent")),
+        (("coulomb-friction",), ("{file}",), ("coulomb-friction", "magnetic-detent")),
+        (("magnetic-detent",), ("{file}",), ("magnetic-detent",)),
     ],
 )
-def test_the_command_names_it_and_stores_its_hash(file, folder, here, capsys, arguments):
-    given = [a.format(file=file) for a in arguments]
+def test_a_file_is_named_among_the_effects_or_beside_them(file, only, files, named):
+    listed = None if only is None else [name.format(file=file) for name in only]
+    found, own = asked_effects(listed, [Path(f.format(file=file)) for f in files])
+    assert found == named
+    assert [term.id for term in own] == ["magnetic-detent"]
+
+
+def test_the_command_names_it_and_stores_its_hash(file, folder, here, capsys):
+    given = ["--effects", f"coulomb-friction, {file}", "--jobs", "2"]
     assert main(["gap", str(folder), "--model", BASE, *given, "-o", "out", "--json"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
