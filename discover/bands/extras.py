@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from discover.bands.as_fitted import as_fitted
 from discover.bands.dividing import searched
 from discover.bands.found import Device, Found, Joined, ids_of
 from discover.bands.search import Banded, BandSearch
@@ -50,7 +51,7 @@ def searched_with(
     space.forget()
     before = None if behind is None else behind.model
     way = Found(device, bands[-1], tuple(bands), search, tuple(joined), None, before)
-    return _chosen(way if device.bands is None else replace(way, fewer=way.fewer[-1:]))
+    return as_fitted(_chosen(way if device.bands is None else replace(way, fewer=way.fewer[-1:])))
 
 
 def held(device: Device, search: BandSearch, banded: Banded) -> Banded:
