@@ -55,7 +55,8 @@ def grown(
     """Return what may join a model.
 
     Terms that only add a force come first. Those that are simulated in time, which takes long, are
-    tried where these leave more than noise and gain no more than twice as much in a straight line.
+    tried where these leave more than noise and gain no more than twice as much in a straight line;
+    where one leaves but noise, those for which what gains may be mistaken.
     What changes the motion or the force is weighed beside friction in the curve that is most
     probable.
 
@@ -77,7 +78,10 @@ def grown(
     most: dict[Place, float] = {}
     for simulated in (False, True):
         chosen = [i for i in ids if _simulated(i) is simulated]
-        if not chosen or (simulated and any(c.assessed and c.assessed.quiet for c in found)):
+        if simulated and any(c.assessed and c.assessed.quiet for c in found):
+            better = [TERMS[c.id] for c in found if c.id and c.assessed and c.value > now.value]
+            chosen = [i for i in chosen if any(i in t.mistaken_for for t in better)]
+        if not chosen:
             continue
         found += _tried(assessor, (now, curved), turns[1:], chosen, len(ids), most, least)
     return weighed(found, now, assessor.seed)
