@@ -73,7 +73,8 @@ def grown(
         fitted.
     """
     found = [Candidate("", now.value, now)]
-    turns = likely_curves(assessor, now)
+    changing = any(TERMS[i].acts != "force" for i in ids)
+    turns = likely_curves(assessor, now) if changing else []
     curved = with_curve(assessor, now, turns[0]) if turns else now
     most: dict[Place, float] = {}
     for simulated in (False, True):
