@@ -63,9 +63,12 @@ def _without_slopes(found: Found, band: int) -> Found:
 
 
 def _promised(found: Found) -> float:
-    """Return by how much an answer's structures are more probable than their fit, nats."""
-    banded = found.banded
-    held = found.assessed.visited[banded.place]
+    """Return by how much an answer's structures are more probable than their fit, nats.
+
+    At the same sizes; where the fit has others, at its most probable ones.
+    """
+    banded, visited = found.banded, found.assessed.visited
+    held = visited.get(banded.place, max(visited.values()))
     held += sum(_prior(found.variants, place) for place in banded.variants)
     return max(
         float(banded.by_variant[band, place]) - held
