@@ -183,20 +183,22 @@ def _tried(
     assessor: Assessor, beside: tuple[Assessed, Assessed], turns: Sequence[FittedTerm],
     ids: Sequence[str], among: int, most: dict[Place, float], least: float,
 ) -> list[Candidate]:
-    """Return some terms beside the model as it is, or with friction's own curve.
+    """Return some terms beside the model as it is, and with friction's own curve.
 
-    The first for those that add a force, the second for those that change it: with that curve, or
-    with others, `turns`. `most` is kept, what any has gained at some sizes.
+    The second for those that change the force: with that curve, or with others, `turns`. Only so
+    those that are simulated. `most` is kept, what any has gained at some sizes.
     """
-    coarse, now = assessor.evaluator.coarse, beside[0]
+    coarse, (now, curved) = assessor.evaluator.coarse, beside
     by_id: dict[str, list[_Weighed]] = {}
-    for model, acting in zip(beside, (True, False), strict=True):
+    for acting in (True, False):
         own = [i for i in ids if (TERMS[i].acts == "force") is acting]
-        trials = trials_of(model.space.scales, coarse, own, model.model, among=among)
-        by_id |= _weighed(assessor, model, trials)
-    for weighed_one in (w for one in by_id.values() for w in one):
-        place, value = weighed_one.place, weighed_one.gain.value
-        most[place] = max(most.get(place, -np.inf), value)
+        simulated = any(_simulated(i) for i in own)
+        for model in [now] if acting or curved is now else [curved] if simulated else [now, curved]:
+            trials = trials_of(model.space.scales, coarse, own, model.model, among=among)
+            for identifier, found_here in _weighed(assessor, model, trials).items():
+                by_id.setdefault(identifier, []).extend(found_here)
+    for w in (w for one in by_id.values() for w in one):
+        most[w.place] = max(most.get(w.place, -np.inf), w.gain.value)
 
     def behind(w: _Weighed) -> float:
         """Return by how much a trial gains less than any at these sizes, nats."""
@@ -205,10 +207,10 @@ def _tried(
     for one in by_id.values():
         one.sort(key=behind)
     found: list[Candidate] = []
-    ranks = [0, 0]  # of those beside each model: beside another, others gain most
+    ranks = [0, 0]  # of those that add a force and of those that change it
     for one in sorted(by_id.values(), key=lambda own: behind(own[0])):
-        gain, model = one[0].gain, one[0].beside
-        which = int(model is not now)
+        gain = one[0].gain
+        which = int(TERMS[gain.trial.id].acts == "force")
         rank = ranks[which]
         ranks[which] += 1
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
@@ -216,9 +218,13 @@ def _tried(
         enough = np.isneginf(least) or any(w.before + w.gain.value / _HALF >= least for w in one)
         if rank >= _NAMES or not worth or not enough:
             found.append(Candidate(gain.trial.id, now.value + min(gain.value, 0.0), None))
-        else:
-            others = turns if model is beside[1] else ()
-            found.append(_fitted(assessor, model, [w.gain for w in one], others))
+            continue
+        fits = []
+        for model, others in ((now, ()), (curved, turns))[: 1 if curved is now else 2]:
+            starts = [w.gain for w in one if w.beside is model]
+            if starts:
+                fits.append(_fitted(assessor, model, starts, others))
+        found.append(max(fits, key=lambda c: c.value))
     return found
 
 
