@@ -27,6 +27,7 @@ from discover.rows import Unexplained, force_rows, noise_percent, unexplained
 from models.checks import InputError, one_of
 from models.constitutive import Band, FittedTerm, ForceModel, SegmentedModel
 from models.terms import TERMS
+from models.terms.between_tests import is_alike
 
 AGREES, UNKNOWN = "agrees", "unknown"
 _STATED = 0.97  # of the probability that the alternatives add up to
@@ -121,7 +122,8 @@ def _answer(campaign: Campaign, baseline: Baseline, found: Search, seed: int) ->
             leftover_in_words(baseline.rows, left, final.models),
         )
         shape = "; ".join(t for t in told if t)
-    differing = () if final.assessed.quiet else differing_records(baseline.rows)
+    one_law = final.assessed.quiet and all(is_alike(t.shape) for t in final.terms)
+    differing = () if one_law else differing_records(baseline.rows)
     records = tuple(
         RecordGap(
             a.observation.file, a.observation.held_out, a.noise_percent, was.relative_percent,

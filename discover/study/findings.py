@@ -26,6 +26,7 @@ from discover.words import (
 )
 from models.cores import CORES
 from models.terms import TERMS
+from models.terms.between_tests import is_alike
 
 _NARROW = 1.3  # ratio of frequencies under which a band can't tell an order
 _OTHER_COORDINATE = 5.0  # nats, by which frequency has to beat speed to be worth a word
@@ -75,7 +76,8 @@ def study_findings(
                 " are given by frequency.",
             )
         )
-    if not found.quiet:  # no law for all explains all
+    one_law = all(is_alike(t.shape) for j in found.joined for t in j.terms)
+    if not (found.quiet and one_law):  # else one law for all explains all
         held = [record_rows(o) for o in prepared.observations if o.held_out]
         result += [d.finding for d in differing_records([*prepared.rows, *held])]
     observed = observation_findings(prepared.observations)

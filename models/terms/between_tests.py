@@ -30,6 +30,11 @@ def share(motion: Motion, shape: Shape) -> float:
     return min(max(late / max(shape.get("over", 0.0), 1.0), 0.0), 1.0)
 
 
+def is_alike(shape: Shape) -> bool:
+    """Tell whether a term is the same in all tests."""
+    return not any(shape.get(p.name, 0.0) for p in (FROM_TEST, ONLY))
+
+
 def growing(scales: Scales, probe: float = 1.0, **shape: float) -> list[Start]:
     """Return what grows from test to test, over the campaign or its first tests."""
     last = max(scales.tests, default=0) - 1.0
