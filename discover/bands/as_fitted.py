@@ -29,19 +29,16 @@ def as_fitted(found: Found) -> Found:
     while found.banded.quiet and found.banded.variants not in seen:
         banded = found.banded
         seen.add(banded.variants)
-        values, value = banded.by_variant.copy(), banded.value
-        for band, place in enumerate(banded.variants):
-            if not _has_slopes(found.variants[place]):
-                continue
-            more = _promised(found)
-            if more <= _MORE:
-                continue
-            more -= _promised(_without_slopes(found, band))
-            before = logsumexp(values[band])
-            values[band, place] -= max(more, 0.0)
-            value += float(logsumexp(values[band]) - before)
-        if np.array_equal(values, banded.by_variant):
+        shaped = [b for b, k in enumerate(banded.variants) if _has_slopes(found.variants[k])]
+        promised = _promised(found) if shaped else 0.0
+        if promised <= _MORE:
             return found
+        values, value = banded.by_variant.copy(), banded.value
+        for band in shaped:
+            more = promised - _promised(_without_slopes(found, band))
+            before = logsumexp(values[band])
+            values[band, banded.variants[band]] -= max(more, 0.0)
+            value += float(logsumexp(values[band]) - before)
         found = found.with_values(values)
         found = replace(found, banded=replace(found.banded, value=value))
     return found

@@ -57,8 +57,8 @@ def grown(
     Terms that only add a force come first. Those that are simulated in time, which takes long, are
     tried where these leave more than noise and gain no more than twice as much in a straight line;
     where one leaves but noise, those for which what gains may be mistaken.
-    What changes the motion or the force is weighed beside friction in the curve that is most
-    probable.
+    What changes the motion or the force is weighed beside friction in its most probable curve, and
+    what is not simulated beside friction as it is, too.
 
     Parameters
     ----------
@@ -183,10 +183,11 @@ def _tried(
     assessor: Assessor, beside: tuple[Assessed, Assessed], turns: Sequence[FittedTerm],
     ids: Sequence[str], among: int, most: dict[Place, float], least: float,
 ) -> list[Candidate]:
-    """Return some terms beside the model as it is, and with friction's own curve.
+    """Return some terms beside the model as it is, or as it is with friction's own curve.
 
-    The second for those that change the force: with that curve, or with others, `turns`. Only so
-    those that are simulated. `most` is kept, what any has gained at some sizes.
+    Those that change the force are fitted from the first, and where that leaves more than noise
+    from the second; those that are simulated from the second alone, and also from other curves,
+    `turns`. `most` is kept, what any has gained at some sizes.
     """
     coarse, (now, curved) = assessor.evaluator.coarse, beside
     by_id: dict[str, list[_Weighed]] = {}
@@ -219,10 +220,10 @@ def _tried(
         if rank >= _NAMES or not worth or not enough:
             found.append(Candidate(gain.trial.id, now.value + min(gain.value, 0.0), None))
             continue
-        fits = []
+        fits: list[Candidate] = []
         for model, others in ((now, ()), (curved, turns))[: 1 if curved is now else 2]:
             starts = [w.gain for w in one if w.beside is model]
-            if starts:
+            if starts and not any(c.assessed and c.assessed.quiet for c in fits):
                 fits.append(_fitted(assessor, model, starts, others))
         found.append(max(fits, key=lambda c: c.value))
     return found

@@ -79,10 +79,10 @@ def _step(
     """Return the force that the spring carries, (N,), mean over each sample's inner steps.
 
     It begins at sample `start`, with the spring pressed in by `bent` and friction at `seal` of what
-    slides. Speeds are half a step
-    behind places. In a step the spring's force is that of places around it (Fox and Goodwin's
-    weights, Newmark's of constant acceleration where it is too stiff for these), and what resists
-    is that of the speed in its middle, or at its end where it is too fast to be followed.
+    slides. Speeds are half a step behind places. In a step the spring's force is that of places
+    around it (Fox and Goodwin's weights, Newmark's of constant acceleration where it is too stiff
+    for these), and what resists is that of the speed in its middle, or at its end where it is too
+    fast to be followed.
     """
     size = x.size
     result = np.empty(size)

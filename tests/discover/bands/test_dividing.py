@@ -46,7 +46,6 @@ def test_every_band_has_records_that_are_wholly_in_it(spread):
     assert widest < spread
 
 
-
 def test_no_boundary_lies_between_tests_of_one_set_point():
     set_points = np.repeat([0.5, 1.0, 2.0, 4.0], 3)
     measured = set_points * (1.0 + 2e-6 * np.arange(12))
