@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import median_filter
+from scipy.ndimage import median_filter, uniform_filter1d
 from scipy.special import gammaincinv
 
 from discover.motion_fit.band_noise import band_noise
@@ -19,6 +19,8 @@ from models.fractional import band_limited, low_pass
 from models.motion import Motion
 
 _SIGNAL_TO_NOISE = 1000.0  # of the displacement's power, at the edge of the excited band
+_FAR_WORSE = 10.0  # ratio of noise powers; few lines alone make one of three
+_GAP = 2.0  # ratio of frequencies between which no line is, for the band to end
 EDGE = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
 _NYQUIST_SHARE = 0.95  # of the Nyquist frequency, where the band ends at the latest
 _FEWEST_LINES = 8  # of the spectrum, that the band holds at least
@@ -35,9 +37,13 @@ def smooth(density: Array, averaged: int = 1) -> Array:
     A median does not spill over the edge of an excited band, as a mean does. Over the mean it is
     that of a gamma law, whose shape is the number of spectra that were `averaged`.
     """
-    size = 2 * max(density.size // 400, 4) + 1
-    level = median_filter(density, size=size, mode="nearest")
+    level = median_filter(density, size=_bins_around(density), mode="nearest")
     return np.asarray(level * averaged / gammaincinv(averaged, 0.5))
+
+
+def _bins_around(density: Array) -> int:
+    """Return how many bins a level is told from: half a percent of all."""
+    return 2 * max(density.size // 400, 4) + 1
 
 
 def floor_of(frequencies: Array, density: Array, above: float) -> float:
@@ -49,9 +55,11 @@ def floor_of(frequencies: Array, density: Array, above: float) -> float:
 def choose_cutoff(displacement: Array, step: float) -> float:
     """Return the end of the band in which displacement stands clear of its noise floor, Hz.
 
-    The edge is where it last stands 30 dB above the floor; the band ends a tenth below it. A
-    displacement that has no floor to stand above, as it moves at all frequencies, ends near the
-    Nyquist frequency; where the force no longer follows it is for the force to tell.
+    The edge is the last line that stands 30 dB above the floor, as noise alone never does, before
+    none does for an octave: a drive's lines may be few and far between, mains hum is farther. The
+    band ends a tenth below it. A displacement that has no floor to stand above, as it moves at
+    all frequencies, ends near the Nyquist frequency; where the force no longer follows it is for
+    the force to tell.
     """
     return _cutoff(*power_density(displacement - displacement.mean(), step))
 
@@ -60,9 +68,18 @@ def _cutoff(frequencies: Array, density: Array) -> float:
     """Return the end of the band of a displacement's power density, Hz."""
     nyquist = float(frequencies[-1])
     floor = floor_of(frequencies, density, 0.6 * nyquist)
-    clear = np.flatnonzero(smooth(density) > _SIGNAL_TO_NOISE * floor)
-    edge = EDGE * frequencies[clear[-1]] if clear.size else nyquist
+    around = uniform_filter1d(density, _bins_around(density), mode="nearest")
+    least = _SIGNAL_TO_NOISE * floor
+    clear = 1 + np.flatnonzero((density[1:] > least) & (around[1:] > least))
+    edge = EDGE * _last_line(frequencies[clear], density[clear]) if clear.size else nyquist
     return float(min(max(edge, _FEWEST_LINES * frequencies[1]), _NYQUIST_SHARE * nyquist))
+
+
+def _last_line(frequencies: Array, density: Array) -> float:
+    """Return the last of lines (K,), Hz, up from the one of most speed, before a gap."""
+    main = int(np.argmax(density * frequencies**2))
+    gaps = np.flatnonzero(frequencies[main + 1 :] > _GAP * frequencies[main:-1])
+    return float(frequencies[main + gaps[0] if gaps.size else -1])
 
 
 def _band_motion(
@@ -194,18 +211,28 @@ class BandFound:
 
 
 def find_band(record: Record, usable: slice) -> BandFound:
-    """Return band and noise of a record; arguments and errors as of `observe_band`."""
+    """Return band and noise of a record; arguments and errors as of `observe_band`.
+
+    The band ends where the force stops following the motion, unless what is left of it is then
+    met far worse than before: a resonance hides what the lines below it follow.
+    """
     step, (time, x, force) = record.step, _columns(record, usable)
     spectrum = power_density(x - x.mean(), step)
-    cutoff, follows = np.inf, _cutoff(*spectrum)
-    while follows < EDGE * cutoff:  # each time by a tenth at least, and never below a few lines
-        cutoff = follows
+
+    def found_to(cutoff: float) -> tuple[BandFound, float]:
         displacement_noise = _white_noise(*spectrum, cutoff)
         motion = _band_motion(record, usable, x, cutoff, displacement_noise)
         inner = _inner(_pieces(time.size, cutoff * step))
-        found = band_noise(motion, x, force, step, cutoff, inner)
-        follows = found.follows
-    return BandFound(cutoff, displacement_noise, found.spectrum)
+        noise = band_noise(motion, x, force, step, cutoff, inner)
+        return BandFound(cutoff, displacement_noise, noise.spectrum), noise.follows
+
+    found, follows = found_to(_cutoff(*spectrum))
+    while follows < EDGE * found.cutoff:  # a tenth less each time, and never below a few lines
+        shorter, next_ = found_to(follows)
+        if shorter.noise.below(follows) > _FAR_WORSE * found.noise.below(follows):
+            break
+        found, follows = shorter, next_
+    return found
 
 
 def observe_band(

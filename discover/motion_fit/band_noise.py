@@ -36,7 +36,7 @@ _PRODUCTS = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0,
 """Powers of displacement and velocity whose products stand for a static law."""
 _ORDERS = (0.25, 0.5, 0.75, 1.25, 1.5, 1.75)
 """Of derivatives of displacement: any smooth linear response is nearly a sum of them."""
-_SCALES = np.geomspace(3e-3, 1.0, 6)
+_SCALES = np.geomspace(3e-3, 1.0, 11)
 """Of the root mean square speed and displacement, over which friction may reverse."""
 _SLOW = 3  # polynomials of time that follow a drift
 _FEWEST_LINES = 12  # of the spectrum, from which noise can be told

@@ -1,4 +1,4 @@
-"""Motions of seven kinds of test with exact derivatives, by seed."""
+"""Motions of eight kinds of test with exact derivatives, by seed."""
 
 from __future__ import annotations
 
@@ -79,6 +79,14 @@ def random(rate: float, rng: Generator) -> Drive:
     return Drive(rate, *_waves(_time(rate, rng), omega, 1.0 / omega, rng))
 
 
+def few_lines(rate: float, rng: Generator) -> Drive:
+    """Lines that are spread over the logarithm of frequency, none a multiple of another."""
+    first, last = rng.uniform(0.15, 0.4), rng.uniform(0.01, 0.04) * rate
+    size = int(rng.integers(25, 120))
+    omega = TURN * np.exp(np.sort(rng.uniform(np.log(first), np.log(last), size)))
+    return Drive(rate, *_waves(_time(rate, rng), omega, omega ** -rng.uniform(0.5, 2.0), rng))
+
+
 def earthquake(rate: float, rng: Generator) -> Drive:
     """Ground with a resonance of its own, that begins and dies away."""
     time = _time(rate, rng)
@@ -125,5 +133,5 @@ def _turning(rate: float, phase: Array, speed: Array, growth: Array) -> Drive:
 
 
 MOTIONS: tuple[Callable[[float, Generator], Drive], ...] = (
-    sine, multisine, sweep, chirp, random, earthquake, trajectory
+    sine, multisine, sweep, chirp, random, earthquake, trajectory, few_lines
 )  # fmt: skip
