@@ -29,10 +29,17 @@ SI_UNITS = {
 }
 """Every kind of quantity that a campaign may hold, with its SI unit."""
 
+ROTARY = (
+    "of a rotary machine give N m as N and rad as m: "
+    "then all results that say N, m and kg are in N m, rad and kg m^2"
+)
+"""What to do with torques and angles."""
+
 SMALLEST, LARGEST = 1e-30, 1e30
 """In SI: beyond them a square is no number."""
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![.\d])")
+_TORQUE = re.compile(r"\b([kmM]?)N ?m\b")  # as it is mostly written
 _OTHER = {
     "m^2/s": "kinematic viscosity",
     "m^2": "area",
@@ -64,7 +71,8 @@ def _registry() -> pint.UnitRegistry[Any]:
 
 
 def _tidy(text: str) -> str:
-    return text.replace("·", "*").replace("⋅", "*").replace("−", "-").strip()
+    tidy = text.replace("·", "*").replace("⋅", "*").replace("−", "-").strip()
+    return _TORQUE.sub(r"\1N*m", tidy)
 
 
 @dataclass(frozen=True)
@@ -97,9 +105,7 @@ def _conversion(text: str, kind: str) -> _Conversion:
     if unit is None:
         raise ValueError(f"{text!r}, which is not a known unit")
     if unit.dimensionality != wanted:
-        slip = kind == "acceleration" and str(unit) in ("gram", "gauss")
-        hint = " (standard gravity is g_0)" if slip else ""
-        raise ValueError(f"{text!r}, a unit of {_dimension(unit)}{hint}")
+        raise ValueError(f"{text!r}, a unit of {_dimension(unit)}{_hint(unit, kind)}")
     if kind == "frequency" and any(key in unit._units for key in _ANGLES):
         turn = float(registry.Quantity(scale, unit).to("radian/second").magnitude)
         return _Conversion(turn / (2.0 * math.pi), 1.0, 0.0)
@@ -111,6 +117,16 @@ def _conversion(text: str, kind: str) -> _Conversion:
     if inverse and math.isclose(inverse * factor, 1.0, rel_tol=1e-12):
         return _Conversion(1.0, float(inverse), 0.0)
     return _Conversion(factor, 1.0, 0.0)
+
+
+def _hint(unit: Any, kind: str) -> str:
+    """Return what may have been meant by a unit that does not measure `kind`, in brackets."""
+    if kind == "acceleration" and str(unit) in ("gram", "gauss"):
+        return " (standard gravity is g_0)"
+    torque = unit.dimensionality == _registry().parse_units("N*m").dimensionality
+    if (torque and kind == "force") or any(key in unit._units for key in _ANGLES):
+        return f" ({ROTARY})"
+    return ""
 
 
 def _parsed(name: str) -> Any:
@@ -132,7 +148,7 @@ def _dimension(unit: Any) -> str:
         if unit.dimensionality == _registry().parse_units(name).dimensionality:
             return kind
     if unit.dimensionless:
-        return "nothing (dimensionless)"
+        return "angle" if any(key in unit._units for key in _ANGLES) else "nothing (dimensionless)"
     return str(unit.dimensionality).replace("[", "").replace("]", "")
 
 

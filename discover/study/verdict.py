@@ -206,7 +206,8 @@ def friction_text(band: Mapping[str, Any]) -> str:
         text += f": {said}, {probability(sure)}"
     if friction["differs_by_record"] >= _WORTH_SAYING:
         differs = percent(100.0 * friction["differs_by_record"])
-        text += f"; it differs between records by {differs}"
+        where = "between records" if len(band["records"]) > 1 else "along the record"
+        text += f"; it differs {where} by {differs}"
     return text
 
 

@@ -162,6 +162,8 @@ def test_hash_depends_on_the_bytes_and_not_on_the_place(tmp_path: Path) -> None:
         ('[columns]\ntemperature = "Q"\n' + ONE, "temperature must be in a column 'Q' of at least"),
         ('[units]\nforce = "m"\n' + ONE,
          r"\[units\]: force must be in a unit of force such as 'N', got 'm', a unit of length"),
+        ('[units]\nforce = "Nm"\n' + ONE, "a unit of torque or energy .of a rotary machine give N m"),
+        ('[units]\ndisplacement = "deg"\n' + ONE, "a unit of angle .of a rotary machine .* rad as m"),
         ("[units]\nforce = 1\n" + ONE, r"\[units\]: force must be in a unit .* got 1"),
         ('[units]\nforse = "N"\n' + ONE, r"\[units\]: key 'forse' .* mean 'force'"),
     ],
