@@ -45,7 +45,8 @@ def _stretch(observation: Observation, middle: int, step: float) -> tuple[int, i
     ends = np.cumsum([w.share for w in observation.windows])
     window = int(np.searchsorted(ends / ends[-1], middle / size))
     frequency = observation.windows[min(window, len(ends) - 1)].frequency
-    length = min(size, int(np.ceil(_TURNS / (frequency * step))) + 1)
+    turns = _TURNS / frequency if frequency else np.inf  # of rest there are none
+    length = int(min(size, np.ceil(turns / step) + 1))
     first = min(max(middle - length // 2, 0), size - length)
     return first, first + length
 

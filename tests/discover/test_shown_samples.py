@@ -48,3 +48,14 @@ def test_a_sweep_shows_as_many_turns_where_it_is_slow_as_where_it_is_fast():
     seen = [np.ptp(turns[part]) for part in np.split(shown, cuts)]
     assert len(seen) == 3
     assert max(seen) < 2.5 * min(seen)
+
+
+def test_a_record_that_rests_for_long_is_shown():
+    """Steps and holds of an encoder: for whole windows nothing moves at all."""
+    time = np.arange(20_000) / 500.0
+    out, back = (np.clip(20.0 * (time - at), 0.0, 1.0) for at in (2.0, 37.0))
+    x = 2.0**-7 * (out - back)
+    force = 1e5 * x + np.random.default_rng(3).standard_normal(time.size)
+    shown = shown_samples(observed(x, force, time))
+    assert np.all(np.diff(shown) > 0)
+    assert 100 < shown.size <= 600
