@@ -339,14 +339,14 @@ def _plain_where_not_told(
 
 
 def _in_choice(fitted: FittedTerm, start: FittedTerm) -> FittedTerm:
-    """Return a term as it is fitted, but in the discrete choice of a start."""
+    """Return a term as it is fitted, but in the discrete choice of a start, within its bounds."""
     shape = {
         p.name: fitted.shape[p.name]
         if p.fitted and (fitted.shape[p.name] == 0.0) == (start.shape[p.name] == 0.0)
         else start.shape[p.name]
         for p in fitted.term.parameters
     }
-    return FittedTerm(fitted.id, fitted.coefficient, shape)
+    return begun(FittedTerm(fitted.id, start.coefficient, shape), fitted.coefficient)
 
 
 def _starting(ranked: Sequence[Gain]) -> list[Gain]:

@@ -117,7 +117,7 @@ TERM = Term(
         Parameter("settling_time", 0.1, 1e5, 0.0, "s", "", "log"),
         Parameter("filter_time", 1e-6, 10.0, 0.0, "s", "", "log"),
         Parameter("digital", 0.0, 1.0, 0.0, "", fitted=False),
-        Parameter("droop_time", 1e-6, 1e5, 0.0, "s", "", "log"),
+        Parameter("droop_time", 0.1, 1e5, 0.0, "s", "", "log"),  # a charge amplifier leaks slowly
         Parameter("load", 1e-9, 1e9, 0.0, "N", fitted=False),
         Parameter("load_power", 0.0, 4.0, 0.0, "", fitted=False),
     ),
