@@ -56,7 +56,7 @@ def trials_of(
     among : int
         Number of terms that may join in all.
     expected : float
-        Number of terms that are expected beforehand.
+        Number of terms that are expected beforehand, but for those that are common.
     """
     there = {p.fitted.id for p in model.terms}
     entries: list[Trial] = []
@@ -64,7 +64,8 @@ def trials_of(
     chosen = [TERMS[i] for i in ids if not set(TERMS[i].needs) - there]
     for term in chosen:
         starts = starts_of(term, scales)
-        prior = float(np.log(expected / among) - np.log(len(starts)))
+        odds = expected / among if term.common is None else term.common
+        prior = float(np.log(odds / len(starts)))
         for start in starts:
             probe = start.probe if term.transform is not None else 1.0
             terms = tuple(FittedTerm(term.id, probe, dict(s)) for s in start.shapes)

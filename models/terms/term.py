@@ -138,6 +138,8 @@ class Term:
     """Tells whether a shape has impacts, which a fit can't find from far; None: none has."""
     starts: Callable[[Scales], Sequence[Start]] | None = None
     """Shapes that are tried first in a campaign; None to spread the parameters."""
+    common: float | None = None
+    """Odds beforehand that records show it; None where it is one of many that may join."""
     curves: Callable[[Scales], Sequence[Shape]] | None = None
     """Shapes by whose columns measured ones differ from the formula's, the plainest first; of a
     term that needs another they are among that one's."""

@@ -18,7 +18,7 @@ CONTRACT = {
     "hysteresis", "position-dependent-friction", "thermal-drift", "sensor-gain", "sensor-drift",
     "sensor-clipping",
 }
-ADDED = {"relaxation", "saturating-damping", "unsteady-friction"}
+ADDED = {"quadratic-stiffness", "relaxation", "saturating-damping", "unsteady-friction"}
 
 
 def force(*terms, motion=MOTION):

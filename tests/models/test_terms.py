@@ -40,7 +40,10 @@ ODD = {
     "fractional-derivative", "stiffness", "cubic-stiffness", "stribeck-friction", "end-stop",
     "hysteresis", "thermal-drift", "unsteady-friction", "relaxation", "saturating-damping",
 }  # fmt: skip
-EVEN = {"force-offset", "asymmetric-damping", "position-dependent-friction", "sensor-drift"}
+EVEN = {
+    "force-offset", "asymmetric-damping", "position-dependent-friction", "sensor-drift",
+    "quadratic-stiffness",
+}  # fmt: skip
 
 
 def motion_of(scale=1.0, *, time=1.0, coefficients=COEFFICIENTS, samples=256):
@@ -181,6 +184,16 @@ def test_a_cube_that_levels_off_is_a_cube_first_and_a_spring_in_the_end():
         found = column("cubic-stiffness", source, closure=0.0, span=span)
         far = np.abs(x) > 1e-3
         np.testing.assert_allclose(found[far], expected[far], rtol=1e-6)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_enclosed_gas_is_an_offset_a_spring_and_a_quadratic_spring_that_closes(side):
+    """At constant temperature its pressure goes as one over the length that is left."""
+    source, length = motion_of(), 0.05
+    x = side * source.displacement
+    gas = length / (length - x)
+    found = column("quadratic-stiffness", source, closure=length, side=side)
+    np.testing.assert_allclose(1.0 + x / length + found / length**2, gas, rtol=1e-12)
 
 
 def test_friction_over_a_transition_tends_to_the_jump():

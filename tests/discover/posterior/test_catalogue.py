@@ -31,7 +31,7 @@ def test_what_needs_a_term_that_the_model_lacks_is_left_out(assessor):
 
 
 def test_priors_of_all_shapes_add_up_to_the_number_that_is_expected(assessor):
-    ids = ("stiffness", "cubic-stiffness", "asymmetric-damping", "force-offset")
+    ids = ("stiffness", "cubic-stiffness", "asymmetric-damping", "end-stop")
     found = tried(assessor, *ids, among=4, expected=0.3)
     chance = {i: [np.exp(e.log_prior) for e in found.entries if e.id == i] for i in ids}
     for own in chance.values():
@@ -40,6 +40,15 @@ def test_priors_of_all_shapes_add_up_to_the_number_that_is_expected(assessor):
     assert len(chance["stiffness"]) == 1 < len(chance["cubic-stiffness"])
     fewer = tried(assessor, "stiffness", among=8, expected=0.3)
     assert np.exp(fewer.entries[0].log_prior) == pytest.approx(0.3 / 8)
+
+
+def test_what_most_records_have_is_expected_whatever_else_may_join(assessor):
+    for among in (4, 20):
+        (offset,) = {e.log_prior for e in tried(assessor, "force-offset", among=among).entries}
+        (spring,) = {e.log_prior for e in tried(assessor, "stiffness", among=among).entries}
+        shapes = len(tried(assessor, "force-offset", among=among).entries)
+        assert np.exp(offset) * shapes == pytest.approx(TERMS["force-offset"].common)
+        assert np.exp(spring) < 0.5 * np.exp(offset)
 
 
 def test_columns_are_those_of_the_trials_in_their_order(assessor):
