@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import log_ndtr
 
+from discover.posterior.signs import allowed
 from models.checks import Array, Indices
 
 _LEAST, _MOST = 0.5, np.finfo(float).eps ** -2.0
 """Of one and a column's product with itself: below the first it is no product but rounding errors,
 above the second these are all that is left of ordinary columns beside it."""
-_LOG_2 = float(np.log(2.0))  # nats: a coefficient of known sign has half the places
-_LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))  # of the normal density
 
 
 @dataclass(frozen=True)
@@ -85,38 +83,7 @@ def solved(
     covariance = np.swapaxes(root, -1, -2) @ root
     value = log_normal + 0.5 * np.sum(half**2, axis=-1)
     value = value - np.sum(np.log(np.diagonal(factor, axis1=-2, axis2=-1)), axis=-1)
-    return Solved(value + _allowed(mean, covariance, sign), mean, covariance)
-
-
-def _allowed(mean: Array, covariance: Array, sign: Array) -> Array:
-    """Return the log of how much of a posterior (...,) its signs allow, over that of the prior.
-
-    One coefficient after the other is cut off at zero, and the others are what they are beside
-    it (Mendell and Elston, Biometrics 30, 1974): columns that are alike can't make up for each
-    other with a sign that neither may have.
-    """
-    if not np.any(sign):
-        return np.zeros(mean.shape[:-1])
-    mean, covariance = mean.copy(), covariance.copy()
-    result = np.zeros(mean.shape[:-1])
-    for k in range(mean.shape[-1]):
-        own = sign[..., k]
-        if not np.any(own):
-            continue
-        variance = np.maximum(covariance[..., k, k], 1e-300)
-        deviation = np.sqrt(variance)
-        z = own * mean[..., k] / deviation
-        inside = log_ndtr(z)
-        ratio = np.exp(-0.5 * z**2 - _LOG_ROOT_2PI - inside)
-        moved = np.where(own == 0.0, 0.0, ratio)
-        result = result + np.where(own == 0.0, 0.0, _LOG_2 + inside)
-        slope = covariance[..., :, k] / deviation[..., None]
-        mean = mean + slope * (own * moved)[..., None]
-        taken = np.clip(moved * (moved + z), 0.0, 1.0)
-        covariance = covariance - (
-            taken[..., None, None] * slope[..., :, None] * slope[..., None, :]
-        )
-    return result
+    return Solved(value + allowed(mean, covariance, sign), mean, covariance)
 
 
 def without(gram: Array, taken: Indices, spread: Array) -> tuple[Array, float]:
