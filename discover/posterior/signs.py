@@ -18,6 +18,7 @@ Flags = NDArray[np.bool_]
 _FAR = 3.0
 """Squared distance of the nearest allowed place, in standard deviations, from which it counts."""
 _LEAST = 1e-300  # variance
+_RIDGE = 1e-12  # of the variance: correlations of one, as of equal columns, have an inverse too
 _TOUCHES = 1e-9  # standard deviations, by which a coefficient may be beyond zero
 _LOG_2 = float(np.log(2.0))  # nats: a coefficient of known sign has half the places
 _LOG_ROOT_2PI = 0.5 * float(np.log(2.0 * np.pi))  # of the normal density
@@ -92,7 +93,7 @@ def _around_nearest(mean: Array, covariance: Array, sign: Array) -> tuple[Array,
     alike = scale[:, :, None] * covariance * scale[:, None, :]
     zero, push = _nearest(z, alike, sign != 0.0)
     both = zero[:, :, None] & zero[:, None, :]
-    inverse = np.linalg.inv(np.where(both, alike, np.eye(z.shape[1])))
+    inverse = np.linalg.inv(_held(alike, zero))
     own = 1.0 / np.maximum(np.diagonal(inverse, axis1=1, axis2=2), _LEAST)
     at_zero = np.log(0.5 * erfcx(push * np.sqrt(0.5 * own))) + 0.5 * np.log(own)
     volume = np.linalg.slogdet(inverse)[1]
@@ -117,9 +118,8 @@ def _nearest(z: Array, alike: Array, signed: Flags) -> tuple[Flags, Array]:
     zero = signed & (z < 0.0)
     push = np.zeros_like(z)
     for turn in range(5 * count):
-        both = zero[:, :, None] & zero[:, None, :]
-        held = np.where(both, alike, np.eye(count))
-        push = np.linalg.solve(held, np.where(zero, -z, 0.0)[..., None])[..., 0]
+        wanted = np.where(zero, -z, 0.0)[..., None]
+        push = np.asarray(np.linalg.solve(_held(alike, zero), wanted)[..., 0], dtype=np.float64)
         place = z + np.einsum("sij,sj->si", alike, push)
         wrong = (zero & (push < 0.0)) | (signed & ~zero & (place < -_TOUCHES))
         if not np.any(wrong):
@@ -129,3 +129,10 @@ def _nearest(z: Array, alike: Array, signed: Flags) -> tuple[Flags, Array]:
             wrong &= last
         zero = zero ^ wrong
     return zero, np.where(zero, np.maximum(push, 0.0), 0.0)
+
+
+def _held(alike: Array, zero: Flags) -> Array:
+    """Return correlations (S, K, K) of the coefficients that are zero, the others on their own."""
+    one = np.eye(zero.shape[1])
+    both = zero[:, :, None] & zero[:, None, :]
+    return np.asarray(np.where(both, alike + _RIDGE * one, one))

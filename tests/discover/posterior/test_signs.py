@@ -74,3 +74,11 @@ def test_the_sign_may_be_either_and_what_has_none_is_free():
     wider[: mean.size, : mean.size] = covariance
     free = allowed(np.append(mean, -7.0), wider, np.append(np.ones(mean.size), 0.0))
     assert free == pytest.approx(allowed(mean, covariance, np.ones(mean.size)))
+
+
+@pytest.mark.parametrize("correlation", [1.0, -1.0])
+def test_equal_columns_have_an_answer(correlation):
+    covariance = np.array([[1.0, correlation, 0.0], [correlation, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    found = allowed(np.array([-9.0, -9.0, -9.0]), covariance, np.ones(3))
+    assert np.isfinite(found)
+    assert found < -70.0
