@@ -70,7 +70,8 @@ def _cutoff(frequencies: Array, density: Array) -> float:
     floor = floor_of(frequencies, density, 0.6 * nyquist)
     around = uniform_filter1d(density, _bins_around(density), mode="nearest")
     least = _SIGNAL_TO_NOISE * floor
-    clear = 1 + np.flatnonzero((density[1:] > least) & (around[1:] > least))
+    lines = (density > least) & (around > least)
+    clear = 1 + np.flatnonzero((lines | (smooth(density) > least))[1:])
     edge = EDGE * _last_line(frequencies[clear], density[clear]) if clear.size else nyquist
     return float(min(max(edge, _FEWEST_LINES * frequencies[1]), _NYQUIST_SHARE * nyquist))
 

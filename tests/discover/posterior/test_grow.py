@@ -188,7 +188,7 @@ def test_another_term_takes_the_place_of_one_that_was_mistaken_for_it():
     assert again.id == "force-offset"
     offset = again.assessed.model.terms[2].fitted
     assert offset.coefficient == pytest.approx(3.0, rel=0.05)
-    assert again.log_prior == pytest.approx(np.log(0.5 / 10))  # its own: of one shape
+    assert again.log_prior == pytest.approx(np.log(0.5))  # its own: of one shape, and common
 
 
 def test_what_can_not_reach_the_evidence_that_is_asked_for_is_not_fitted():
