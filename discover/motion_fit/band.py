@@ -19,7 +19,6 @@ from models.fractional import band_limited, low_pass
 from models.motion import Motion
 
 _SIGNAL_TO_NOISE = 1000.0  # of the displacement's power, at the edge of the excited band
-_FAR_WORSE = 10.0  # ratio of noise powers; few lines alone make one of three
 _GAP = 2.0  # ratio of frequencies between which no line is, for the band to end
 EDGE = 0.9  # of that edge: next to it, derivatives lean on what lies beyond
 _NYQUIST_SHARE = 0.95  # of the Nyquist frequency, where the band ends at the latest
@@ -55,11 +54,11 @@ def floor_of(frequencies: Array, density: Array, above: float) -> float:
 def choose_cutoff(displacement: Array, step: float) -> float:
     """Return the end of the band in which displacement stands clear of its noise floor, Hz.
 
-    The edge is the last line that stands 30 dB above the floor, as noise alone never does, before
-    none does for an octave: a drive's lines may be few and far between, mains hum is farther. The
-    band ends a tenth below it. A displacement that has no floor to stand above, as it moves at
-    all frequencies, ends near the Nyquist frequency; where the force no longer follows it is for
-    the force to tell.
+    The edge is where its level, or a line of it, last stands 30 dB above the floor before nothing
+    does for an octave: a drive's lines may be few and far between, mains hum is farther. The band
+    ends a tenth below it. A displacement that has no floor to stand above, as it moves at all
+    frequencies, ends near the Nyquist frequency; where the force no longer follows it is for the
+    force to tell.
     """
     return _cutoff(*power_density(displacement - displacement.mean(), step))
 
@@ -77,7 +76,7 @@ def _cutoff(frequencies: Array, density: Array) -> float:
 
 
 def _last_line(frequencies: Array, density: Array) -> float:
-    """Return the last of lines (K,), Hz, up from the one of most speed, before a gap."""
+    """Return the last of lines (K,) before a gap, Hz, up from the one of most speed."""
     main = int(np.argmax(density * frequencies**2))
     gaps = np.flatnonzero(frequencies[main + 1 :] > _GAP * frequencies[main:-1])
     return float(frequencies[main + gaps[0] if gaps.size else -1])
@@ -212,28 +211,18 @@ class BandFound:
 
 
 def find_band(record: Record, usable: slice) -> BandFound:
-    """Return band and noise of a record; arguments and errors as of `observe_band`.
-
-    The band ends where the force stops following the motion, unless what is left of it is then
-    met far worse than before: a resonance hides what the lines below it follow.
-    """
+    """Return band and noise of a record; arguments and errors as of `observe_band`."""
     step, (time, x, force) = record.step, _columns(record, usable)
     spectrum = power_density(x - x.mean(), step)
-
-    def found_to(cutoff: float) -> tuple[BandFound, float]:
+    cutoff, follows = np.inf, _cutoff(*spectrum)
+    while follows < EDGE * cutoff:  # each time by a tenth at least, and never below a few lines
+        cutoff = follows
         displacement_noise = _white_noise(*spectrum, cutoff)
         motion = _band_motion(record, usable, x, cutoff, displacement_noise)
         inner = _inner(_pieces(time.size, cutoff * step))
-        noise = band_noise(motion, x, force, step, cutoff, inner)
-        return BandFound(cutoff, displacement_noise, noise.spectrum), noise.follows
-
-    found, follows = found_to(_cutoff(*spectrum))
-    while follows < EDGE * found.cutoff:  # a tenth less each time, and never below a few lines
-        shorter, next_ = found_to(follows)
-        if shorter.noise.below(follows) > _FAR_WORSE * found.noise.below(follows):
-            break
-        found, follows = shorter, next_
-    return found
+        found = band_noise(motion, x, force, step, cutoff, inner)
+        follows = found.follows
+    return BandFound(cutoff, displacement_noise, found.spectrum)
 
 
 def observe_band(

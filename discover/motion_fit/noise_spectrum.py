@@ -20,7 +20,6 @@ _SLOPE_FROM = 8  # lowest ranges, which tell the rise to low frequencies
 _STEEPEST = 2.0  # power of the frequency, with which noise may rise to low ones
 _CLEAR = 1.6  # bins from a harmonic: nearer ones are left out
 _LEAST_LEFT = 0.2  # of the noise's power, after a harmonic for every cycle was taken out
-_POINTS = 1000  # over which a density is summed
 _LEAST = 1e-300  # N^2/Hz, so that logarithms stay finite
 _LINE = 15.0  # times the level: noise alone is above it once in three million bins
 
@@ -40,11 +39,6 @@ class NoiseSpectrum:
         """Return the density at other frequencies (Hz), N^2/Hz."""
         known = np.log(self.frequencies), np.log(np.maximum(self.density, _LEAST))
         return np.asarray(np.exp(np.interp(np.log(frequencies), *known)))
-
-    def below(self, end: float) -> float:
-        """Return the mean square of the noise up to a frequency (Hz), N^2."""
-        line = np.linspace(0.0, end, _POINTS + 1)[1:]
-        return float(np.mean(self.at(line))) * end
 
 
 def noise_spectrum(time: Array, force: Array, frequency: float, step: float) -> NoiseSpectrum:

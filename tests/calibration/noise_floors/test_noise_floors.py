@@ -43,13 +43,28 @@ def _force(drive: Drive, rng: np.random.Generator, *, friction: bool) -> np.ndar
     force = force + rng.uniform(0.3, 1.5) * size * drive.v / speed
     force = force + rng.choice([0.0, 0.5]) * size * drive.x / drive.x.std()
     if friction:
-        turns = rng.uniform(0.005, 0.05) * speed
-        force = force + rng.uniform(0.2, 1.0) * size * np.tanh(drive.v / turns)
+        force = force + rng.uniform(0.2, 1.0) * size * _friction(drive, rng)
     return force
 
 
+def _friction(drive: Drive, rng: np.random.Generator) -> np.ndarray:
+    """Return friction of size one: over a speed, with long tails, or over a deflection."""
+    law = rng.integers(3)
+    if law == 0:
+        return np.tanh(drive.v / (10.0 ** rng.uniform(-2.3, 0.0) * drive.v.std()))
+    if law == 1:
+        slow = 10.0 ** rng.uniform(-2.3, -0.3) * drive.v.std()
+        return 2.0 / np.pi * np.arctan(drive.v / slow)
+    deflection, state = 10.0 ** rng.uniform(-2.5, -0.3) * drive.x.std(), 0.0
+    held = np.zeros(drive.x.size)
+    for i, step in enumerate(np.diff(drive.x), start=1):
+        state = np.sign(step) + (state - np.sign(step)) * np.exp(-abs(step) / deflection)
+        held[i] = state
+    return held
+
+
 def noisy(number: int) -> Noisy:
-    """Return a record by its number: the kinds in turn, without and with friction and colour."""
+    """Return a record by its number: the kinds in turn, with friction and colour or without."""
     rng = np.random.default_rng(3200 + number)
     around, kind = divmod(number, len(MOTIONS))
     drive = MOTIONS[kind](float(rng.choice([200.0, 500.0, 1000.0])), rng)
