@@ -145,6 +145,15 @@ def _friction(term: Entry) -> Markup:
     return _CURVE if shape(term) or term.get("parts") else _SIGN
 
 
+def _named(term: Entry) -> Markup:
+    return Markup("<mtext> × {}</mtext>").format(short_name(str(term["id"])))
+
+
+def _spring(power: int) -> Callable[[Entry], Markup]:
+    """Return how a spring of a power is written; by name where it closes or levels off."""
+    return lambda term: _named(term) if shape(term) else _power(_X, power)
+
+
 _FACTORS: Mapping[str, Callable[[Entry], Markup]] = {
     "inertia": lambda _: _A,
     "viscous-damping": lambda _: _V,
@@ -155,7 +164,8 @@ _FACTORS: Mapping[str, Callable[[Entry], Markup]] = {
     "asymmetric-damping": _asymmetric,
     "stribeck-friction": _stribeck,
     "stiffness": lambda _: _X,
-    "cubic-stiffness": lambda _: _power(_X, 3),
+    "quadratic-stiffness": _spring(2),
+    "cubic-stiffness": _spring(3),
     "force-offset": lambda _: Markup(""),
 }
 """How a term is written after its coefficient; others by name."""
@@ -177,7 +187,4 @@ _CHANGES: Mapping[str, Callable[[float], str]] = {
 
 
 def _factor(term: Entry) -> Markup:
-    factor = _FACTORS.get(str(term["id"]))
-    if factor is not None:
-        return factor(term)
-    return Markup("<mtext> × {}</mtext>").format(short_name(str(term["id"])))
+    return _FACTORS.get(str(term["id"]), _named)(term)
