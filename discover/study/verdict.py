@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from discover.friction_parts import whole_friction
 from discover.shape_words import shape
 from discover.study.extras_words import extras_line
 from discover.words import (
@@ -190,14 +191,15 @@ def friction_text(band: Mapping[str, Any]) -> str:
     one that may be zero.
     """
     friction, own = band.get("friction"), _frictions(band)
-    size = sum(t["coefficient"] for t in own)
-    if not friction or not size:
+    if not friction or not any(t["coefficient"] for t in own):
         return ""
     if not _is_told(own):
         highs = [t["interval"][1] for t in own]
         most = "" if None in highs else f", at most {significant(sum(highs), 3)} N"
         return f"not told from zero{most}"
-    text = f"{significant(size, 3)} N, {friction['curve']}"
+    (whole,) = _frictions({"terms": whole_friction(own)})
+    size = quantity(whole["coefficient"], whole.get("unit", "N"), whole.get("interval"))
+    text = f"{size}, {friction['curve']}"
     if "presliding_displacement" in friction or "transition_speed" in friction:
         pair = ("a displacement", "a speed")
         over, other = pair if "presliding_displacement" in friction else pair[::-1]

@@ -114,7 +114,7 @@ def test_page_carries_each_part(page):
         "Beside the structure",
         "cubic stiffness (6 %)",
         "left over beyond noise: 0.52 % (0.31 to 0.68 %)",
-        "402 N, deflects over 0.05 mm before it slides (0.04 to 0.06 mm)",
+        "402 N (394 to 410), deflects over 0.05 mm before it slides (0.04 to 0.06 mm)",
     ):
         assert part in page.text
 
@@ -261,6 +261,18 @@ def test_how_friction_reverses_is_not_told_of_friction_that_may_be_none():
     lines = "\n".join(verdict_lines(document))
     assert "Friction: not told from zero, at most 0.3 N." in lines
     assert "slides" not in lines
+
+
+def test_friction_of_several_curves_is_told_whole_with_its_interval():
+    document = sample_document()
+    parts = [
+        {"id": "coulomb-friction", "unit": "N", "coefficient": size, "transition_speed": speed,
+         "interval": [0.9 * size, 1.1 * size]}
+        for size, speed in ((18.0, 0.024), (2.0, 0.001))
+    ]  # fmt: skip
+    for band in document["bands"]:
+        band["terms"] = [t for t in band["terms"] if t["id"] != "coulomb-friction"] + parts
+    assert "Friction: 20 N (18 to 22)" in "\n".join(verdict_lines(document))
 
 
 @pytest.mark.parametrize("verdict", ["consistent", "contradicted", "undetermined", "no-boundary"])
