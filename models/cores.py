@@ -23,6 +23,8 @@ class Core:
     """Range of a term's shape parameter, by the term's id, where it is not the term's own."""
     alone: tuple[str, ...] = ()
     """Ids of terms each of which makes it by itself, too."""
+    beside: tuple[str, ...] = ()
+    """Ids of other structures' terms with which a device is this one still: what it has besides."""
 
     @property
     def variants(self) -> tuple[tuple[str, ...], ...]:
@@ -42,7 +44,10 @@ OTHER = "other"
 """Name of what none of the structures is."""
 
 CORES = (
-    Core("FOIM", "fractional", ("fractional-derivative",)),
+    Core(
+        "FOIM", "fractional", ("fractional-derivative",),
+        beside=("inertia", "viscous-damping", "quadratic-damping"),
+    ),
     Core("IOIM-linear", "integer", ("inertia",), ("viscous-damping",)),
     Core("IOIM-laminar", "integer", ("inertia", "quadratic-damping"), ("viscous-damping",)),
     Core(
@@ -102,9 +107,12 @@ def core_of(ids: Collection[str]) -> str:
     --------
     >>> core_of(["inertia", "viscous-damping", "coulomb-friction", "stiffness"])
     'IOIM-linear'
+    >>> core_of(["fractional-derivative", "inertia"])
+    'FOIM'
     """
     own = TELLING & set(ids)
     for core in CORES:
-        if set(core.required) <= own <= {*core.required, *core.optional} and core.required:
+        known = {*core.required, *core.optional, *core.beside}
+        if set(core.required) <= own <= known and core.required:
             return core.name
     return OTHER

@@ -25,25 +25,29 @@ from discover.posterior.setup import space_of
 from discover.posterior.space import Part, Space, parts_of
 from discover.posterior.spread import is_told
 from discover.posterior.step import Candidate, Step
+from discover.posterior.structures import Variant
 from discover.rows import RecordRows, force_rows
 from discover.rows.columns import Behind
 from models.checks import Array
-from models.cores import family_of
+from models.constitutive import FittedTerm
+from models.cores import TELLING, family_of
 
 
 def searched_with(
     device: Device, joined: Sequence[Joined], place: Place | None, behind: Assessed | None = None
 ) -> Found:
-    """Return the bands with what has joined."""
+    """Return the bands with what has joined: as it is in the model behind, where there is one."""
+    if behind is not None:
+        joined = [_as_fitted(j, behind) for j in joined]
     space, curve, parts = _space(device, joined, behind)
-    variants = variants_of(space, device.cores, device.grids)
+    variants = _beside(variants_of(space, device.cores, device.grids), device, joined)
     units = space.sheet.units
     values = {
         "speed": np.array([u.speed for u in units]),
         "frequency": np.array([u.frequency for u in units]),
     }
     search = BandSearch(
-        space, variants, curve if device.with_friction else None, tuple(parts),
+        space, tuple(variants), curve if device.with_friction else None, tuple(parts),
         {name: values[name] for name in device.coordinates},
     )
     search, found = searched(search, place, bands=device.bands)
@@ -52,6 +56,12 @@ def searched_with(
     before = None if behind is None else behind.model
     way = Found(device, bands[-1], tuple(bands), search, tuple(joined), None, before)
     return as_fitted(_chosen(way if device.bands is None else replace(way, fewer=way.fewer[-1:])))
+
+
+def _as_fitted(joined: Joined, behind: Assessed) -> Joined:
+    """Return what has joined with the values that a model has for it."""
+    own = tuple(p.fitted for p in behind.model.terms if p.fitted.id == joined.id)
+    return replace(joined, terms=own) if len(own) == len(joined.terms) else joined
 
 
 def held(device: Device, search: BandSearch, banded: Banded) -> Banded:
@@ -112,7 +122,8 @@ def with_one_more(way: Found, *, least: float = -np.inf) -> Found | Step:
     now = way.assessed
     step = _that_predict(now, grown(way.device.assessor, now, _open(way), least=least))
     while step.best.id and step.best.assessed is not None:
-        more = _settled(_joined(way, step))
+        more = _joined(way, step)
+        more = _settled(more, step.best.id)
         if any(j.id == step.best.id for j in more.joined):
             return more
         step = _that_predict(now, step.without([step.best.id]))
@@ -120,9 +131,21 @@ def with_one_more(way: Found, *, least: float = -np.inf) -> Found | Step:
 
 
 def _open(way: Found) -> list[str]:
-    """Return the ids of what may join."""
+    """Return the ids of what may join; of structures' terms what each band's may have beside."""
     there = {j.id for j in way.joined}
-    return [i for i in way.device.extras if i not in there]
+    names = {way.variants[v].core for v in way.banded.variants}
+    held = [set(c.beside) for c in way.device.cores if c.name in names]
+    return [
+        i for i in way.device.extras
+        if i not in there and (i not in TELLING or all(i in beside for beside in held))
+    ]
+
+
+def _beside(variants: Sequence[Variant], device: Device, joined: Sequence[Joined]) -> list[Variant]:
+    """Return structures, those ruled out that hold or become others with what has joined."""
+    own = {j.id for j in joined} & TELLING
+    possible = {c.name for c in device.cores if own <= set(c.beside)}
+    return [v if v.core in possible else replace(v, log_prior=-np.inf) for v in variants]
 
 
 def _joined(way: Found, step: Step) -> Found:
@@ -132,27 +155,36 @@ def _joined(way: Found, step: Step) -> Found:
         raise ValueError("what joins is fitted")
     terms = best.assessed.model.terms
     new = Joined(tuple(terms[i].fitted for i in best.places), best.log_prior, step)
-    fitted = {t.fitted.id: t.fitted for t in terms}
-    old = [
-        replace(j, terms=tuple(fitted.get(t.id, t) for t in j.terms)) if len(j.terms) == 1 else j
-        for j in way.joined
-    ]
-    return searched_with(way.device, (*old, new), best.assessed.place, best.assessed)
+    return searched_with(way.device, (*way.joined, new), best.assessed.place, best.assessed)
 
 
-def _settled(way: Found) -> Found:
+def with_several(way: Found, terms: Sequence[tuple[FittedTerm, float]]) -> Found:
+    """Return the bands with terms that join at once, of which each is needed beside the others.
+
+    Parameters
+    ----------
+    way : Found
+        Without them.
+    terms : sequence of (FittedTerm, float)
+        What joins, and its log prior, nats.
+    """
+    joined = [Joined((t,), prior, Step(())) for t, prior in terms]
+    found = searched_with(way.device, (*way.joined, *joined), way.banded.place)
+    return _settled(_settled(found, ""), "")  # what was needed beside others as they were at first
+
+
+def _settled(way: Found, newest: str) -> Found:
     """Return the bands without what has joined and need not, and the rest chosen again.
 
     Beside what joined later: an offset of every test's own may have joined for what another term
     explains since, and a sensor's drift where an offset is enough now.
     """
-    newest = way.joined[-1]
-    for joined in way.joined:
-        now = way.assessed
+    for identifier in [j.id for j in way.joined]:
+        now, joined = way.assessed, next(j for j in way.joined if j.id == identifier)
         own, less = _less(way, joined)
         if not (is_told(now, own) and is_needed(less, now)):
             way = _left_with(way, joined, less)
-        elif joined is not newest:
+        elif identifier != newest:
             way = _chosen_again(way, joined, less)
     return way
 
@@ -167,15 +199,20 @@ def _chosen_again(way: Found, joined: Joined, less: Assessed) -> Found:
     others = [i for i in own[0].term.mistaken_for if i in open_ids]
     among = len(open_ids) + 1
     best = chosen_again(way.device.assessor, now, less, own, prior, others, among)
-    if not best.id or best.assessed is None:
+    stays = not best.id or best.assessed is None
+    if stays and joined.step.candidates:
         return way
-    terms = tuple(best.assessed.model.terms[i].fitted for i in best.places)
+    was = Candidate(joined.id, now.value + prior, now, len(own))
     step = joined.step
-    if best.id != joined.id:
-        was = Candidate(joined.id, now.value + prior, now, len(own))
-        step = weighed((best, was, Candidate("", less.value, less)), less, way.device.seed)
+    if stays or best.id != joined.id or not step.candidates:
+        found = (was,) if stays else (best,) if best.id == joined.id else (best, was)
+        step = weighed((*found, Candidate("", less.value, less)), less, way.device.seed)
+    if stays or best.assessed is None:
+        new = replace(joined, step=step)
+        return replace(way, joined=tuple(new if j.id == new.id else j for j in way.joined))
+    terms = tuple(best.assessed.model.terms[i].fitted for i in best.places)
     new = Joined(terms, best.log_prior, step)
-    joined_now = [new if j is joined else j for j in way.joined]
+    joined_now = [new if j.id == joined.id else j for j in way.joined]
     return searched_with(way.device, joined_now, best.assessed.place, best.assessed)
 
 
@@ -196,7 +233,7 @@ def _less(way: Found, joined: Joined) -> tuple[list[int], Assessed]:
 
 
 def _left_with(way: Found, joined: Joined, less: Assessed) -> Found:
-    others = [j for j in way.joined if j is not joined]
+    others = [j for j in way.joined if j.id != joined.id]
     return searched_with(way.device, others, less.place, less)
 
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from discover.bands.extras import held, searched_with, with_one_more
+from discover.bands.extras import held, searched_with, with_one_more, with_several
 from discover.bands.found import Device, Found, ids_of
 from discover.bands.idle import without_idle
+from discover.bands.together import together
 from discover.posterior.left_out import is_told_from_noise, predicts_better
 from discover.posterior.step import Step
 from models.cores import family_of
@@ -49,14 +50,41 @@ def found(device: Device) -> Found:
 def _or_one_band(way: Found) -> Found:
     """Return a way that leaves but noise, or one band with one term more where that is better.
 
-    As bands may stand for a term, they are weighed against each.
+    As bands may stand for a term, they are weighed against each, beside each family.
     """
     if not way.quiet or way.banded.bands == 1 or way.device.bands is not None:
         return way
-    more = with_one_more(_in_one_band(way), least=way.value)
-    if isinstance(more, Step) or not _is_better(more, way):
-        return way
-    return searched_with(way.device, more.joined, more.banded.place, more.assessed)
+    for one in _one_band(way):
+        new = _names(one) - _names(way)
+        more = one if new else with_one_more(one, least=way.value)
+        if not isinstance(more, Step) and _is_better(more, way):
+            return searched_with(way.device, more.joined, more.banded.place, more.assessed)
+    return way
+
+
+def _one_band(way: Found) -> Iterator[Found]:
+    """Yield one band throughout: as it is, with terms that join together, and of each family.
+
+    What a device has besides, a delay say, may be what makes the wrong family more probable, or a
+    remainder that stands for all of it.
+    """
+    one = _in_one_band(way)
+    yield one
+    bare = searched_with(one.device, (), None) if one.joined else one
+    several = together(bare)
+    if several:
+        yield with_several(bare, several)
+    yield from _of_each_family(way)
+
+
+def _of_each_family(way: Found) -> Iterator[Found]:
+    """Yield one band throughout with the structure of each family that explains most by itself."""
+    one = _in_one_band(way)
+    unaided = way.search.unaided(one.banded)
+    for family in sorted({family_of(ids_of(v)) for v in one.variants}):
+        device = replace(one.device, family=family)
+        own = held(device, way.search, unaided)
+        yield replace(one, device=device, banded=own, fewer=(own,))
 
 
 def _in_one_band(way: Found) -> Found:
@@ -71,20 +99,10 @@ def _names(way: Found) -> set[str]:
 
 
 def _starts(now: Found) -> Iterator[Found]:
-    """Yield what terms join: the bands as they are found, one band, and one of each family.
-
-    What a device has besides, a delay say, may be what makes the wrong family more probable, or a
-    remainder that stands for all of it. Of each family it is what explains most by itself.
-    """
+    """Yield what terms join: the bands as they are found, and one band."""
     yield now
     if now.device.bands in (None, 1):
-        one = _in_one_band(now)
-        yield one
-        unaided = now.search.unaided(one.banded)
-        for family in sorted({family_of(ids_of(v)) for v in one.variants}):
-            device = replace(one.device, family=family)
-            own = held(device, now.search, unaided)
-            yield replace(one, device=device, banded=own, fewer=(own,))
+        yield from _one_band(now)
 
 
 def _grown(way: Found, seen: set[tuple[object, ...]]) -> Found | None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import next_fast_len
 from scipy.ndimage import median_filter, uniform_filter1d
 from scipy.special import gammaincinv
 
@@ -135,20 +136,32 @@ def _pieces(size: int, cutoff: float) -> list[tuple[int, Array]]:
     edge = min(int(np.ceil(_EDGE_PERIODS / cutoff)), size // 20)
     inner = size - 2 * edge
     count = int(np.clip(size * cutoff / _LINES_PER_WINDOW, 1, _MAX_WINDOWS))
-    ends = edge + np.linspace(0, inner, count + 1).astype(int)
-    half = max(int(0.5 * _TAPER * inner / count), 1)
+    half = _crossing(inner, count)
+    step = (inner - 2 * half) // count
+    length = step + 2 * half
     fade = max(int(np.ceil(1.0 / cutoff)), 1)
     pieces = []
     for index in range(count):
-        first, last = index == 0, index == count - 1
-        start = int(ends[index]) - (0 if first else half)
-        stop = int(ends[index + 1]) + (0 if last else half)
-        taper = np.ones(stop - start)
-        rise, fall = (fade if first else 2 * half), (fade if last else 2 * half)
+        taper = np.ones(length)
+        rise = fade if index == 0 else 2 * half
+        fall = fade if index == count - 1 else 2 * half
         taper[:rise] = np.sin(0.5 * np.pi * (np.arange(rise) + 0.5) / rise)
-        taper[taper.size - fall :] *= np.cos(0.5 * np.pi * (np.arange(fall) + 0.5) / fall)
-        pieces.append((start, taper))
+        taper[length - fall :] *= np.cos(0.5 * np.pi * (np.arange(fall) + 0.5) / fall)
+        pieces.append((edge + index * step, taper))
     return pieces
+
+
+def _crossing(inner: int, count: int) -> int:
+    """Return half the samples over which windows of equal length cross, so many in `inner`.
+
+    About a twentieth of a window, so that its length is a product of small primes: its spectrum
+    then takes a fraction of the time.
+    """
+    about = max(int(0.5 * _TAPER * inner / count), 1)
+    likely = sorted(range(about - about // 4, about + about // 4 + 1), key=lambda h: abs(h - about))
+    lengths = ((inner - 2 * h) // count + 2 * h for h in likely)
+    fast = (h for h, n in zip(likely, lengths, strict=True) if next_fast_len(n, real=True) == n)
+    return next(fast, about)
 
 
 def _projection(inside: slice, taper: Array, count: int) -> Callable[[Array], Lines]:

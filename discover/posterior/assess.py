@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -25,6 +25,8 @@ _ORDINARY = -3
 to record where nothing else is behind it."""
 FEW_STEPS = 3
 """Of a fit from each of several places, of which the best goes on."""
+_SPACES = 3
+"""Spaces behind sensors that are kept."""
 _POSSIBLE = 0.05
 """Probability from which it may be that no more is left."""
 
@@ -45,9 +47,6 @@ class Assessed:
     """Log evidence at every place that was looked at."""
     quiet: bool
     """True where all but noise may be explained."""
-    space: Space
-    """Of the records, friction's curve as the model's sensors pass it on."""
-
     assessor: Assessor
     """By which it is."""
 
@@ -60,6 +59,11 @@ class Assessed:
     def model(self) -> Composite:
         """The model at its best values."""
         return self.local.model
+
+    @property
+    def space(self) -> Space:
+        """Of the records, friction's curve as the model's sensors pass it on."""
+        return self.assessor.behind(self.model)
 
     @property
     def curve(self) -> Part | None:
@@ -104,6 +108,9 @@ class Assessor:
     """Whether curves of friction count that have a name among effects."""
     seed: int = 0
     """Of what is drawn."""
+    _behind: dict[tuple[object, ...], Space] = field(
+        default_factory=dict, repr=False, compare=False
+    )
 
     def glance(
         self, model: Composite, place: Place, *, iterations: int
@@ -158,7 +165,7 @@ class Assessor:
             space.forget()
         return Assessed(
             local, place, float(logsumexp(list(visited.values()))), best, visited,
-            is_quiet(visited), space, self,
+            is_quiet(visited), self,
         )
 
     def _impossible(self, local: Local, place: Place) -> Assessed:
@@ -167,18 +174,28 @@ class Assessor:
         nothing = Solved(np.array(-np.inf), np.zeros(count), np.diag(local.spread**2))
         judged_so = Judged(-np.inf, 1.0, nothing, np.zeros((count, count)), np.zeros(count))
         return Assessed(
-            local, place, -np.inf, judged_so, {place: -np.inf}, quiet=False, space=self.space,
-            assessor=self,
+            local, place, -np.inf, judged_so, {place: -np.inf}, quiet=False, assessor=self,
         )
 
     def behind(self, model: Composite) -> Space:
         """Return the space with friction's curve as a model's sensors pass it on.
 
-        Behind a joint it stays as it is: each column would have to be simulated in time.
+        Behind a joint it stays as it is: each column would have to be simulated in time. A space is
+        large: of the latest models only it is kept.
         """
         if self.friction is None or not model.changes_force:
             return self.space
-        return behind(self.space, self.friction, self.evaluator.behind(model))
+        key = tuple(
+            (t.id, t.coefficient, *t.shape.items(), p.share)
+            for p in model.terms for t in (p.fitted,)
+        )
+        space = self._behind.pop(key, None)
+        if space is None:
+            space = behind(self.space, self.friction, self.evaluator.behind(model))
+        while len(self._behind) >= _SPACES:
+            del self._behind[next(iter(self._behind))]
+        self._behind[key] = space
+        return space
 
     def curve_of(self, model: Composite) -> Part | None:
         """Return the departures of friction's curve where a model has that friction.

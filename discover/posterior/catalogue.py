@@ -32,6 +32,11 @@ def starts_of(term: Term, scales: Scales) -> list[Start]:
     return [Start((s,), trial_size(term, s, motion, force)) for s in shapes]
 
 
+def term_log_prior(term: Term, among: int, expected: float = EXPECTED) -> float:
+    """Return the log odds (nats) of a term beforehand, as one of so many that may join."""
+    return float(np.log(expected / among if term.common is None else term.common))
+
+
 def trials_of(
     scales: Scales,
     evaluator: Evaluator,
@@ -64,8 +69,7 @@ def trials_of(
     chosen = [TERMS[i] for i in ids if not set(TERMS[i].needs) - there]
     for term in chosen:
         starts = starts_of(term, scales)
-        odds = expected / among if term.common is None else term.common
-        prior = float(np.log(odds / len(starts)))
+        prior = term_log_prior(term, among, expected) - float(np.log(len(starts)))
         for start in starts:
             probe = start.probe if term.transform is not None else 1.0
             terms = tuple(FittedTerm(term.id, probe, dict(s)) for s in start.shapes)

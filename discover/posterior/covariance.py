@@ -45,6 +45,26 @@ class Sizes:
 
 
 @dataclass(frozen=True)
+class Plain:
+    """Columns at one size of the independent error, and their plain products within units."""
+
+    products: Products
+    """What they are of."""
+    scaled: Array
+    """(U, C, R) the columns."""
+
+    @cached_property
+    def across(self) -> Array:
+        """(U, F + N, C) products with remainder and own friction."""
+        return np.asarray(self.products.nuisance @ self.scaled.transpose(0, 2, 1))
+
+    @cached_property
+    def among(self) -> Array:
+        """(U, C, C) products with each other."""
+        return np.asarray(self.scaled @ self.scaled.transpose(0, 2, 1))
+
+
+@dataclass(frozen=True)
 class Products:
     """Plain products of columns within each unit, at one size of the independent error."""
 
@@ -56,6 +76,20 @@ class Products:
     """(U, K, R) columns, the measured force last."""
     loud: tuple[float, ...]
     """(L,) sizes of the independent error."""
+    _known: dict[bytes, Plain] = field(default_factory=dict, repr=False)
+    _given: dict[Sizes, Given] = field(default_factory=dict, repr=False)
+
+    def at(self, sizes: Sizes) -> Given:
+        """Return what products under the inverse covariance of sizes are made of, made once."""
+        if sizes not in self._given:
+            self._given[sizes] = given(self, sizes)
+        return self._given[sizes]
+
+    @property
+    def kept_bytes(self) -> int:
+        """Bytes of what was made here and is kept."""
+        made = {n: v for n, v in vars(self).items() if n not in ("sheet", "own", "columns")}
+        return _bytes(made)
 
     @cached_property
     def _loud(self) -> Array:
@@ -69,15 +103,23 @@ class Products:
         return np.asarray(np.sqrt(1.0 + self._loud))
 
     @cached_property
-    def base(self) -> Array:
-        """(U, F + N + K, R) remainder, own friction and columns, over `scale`."""
-        whole = np.concatenate([self.sheet.remainder, self.own, self.columns], axis=1)
+    def nuisance(self) -> Array:
+        """(U, F + N, R) remainder and own friction, over `scale`."""
+        whole = np.concatenate([self.sheet.remainder, self.own], axis=1)
         return np.asarray(whole / self.scale[:, None])
 
     @cached_property
     def gram(self) -> Array:
-        """(U, F + N + K, F + N + K) products of these."""
-        return np.asarray(self.base @ self.base.transpose(0, 2, 1))
+        """(U, F + N, F + N) products of these."""
+        return np.asarray(self.nuisance @ self.nuisance.transpose(0, 2, 1))
+
+    def of(self, columns: Indices) -> Plain:
+        """Return some of the columns (C,), made once."""
+        key = columns.tobytes()
+        if key not in self._known:
+            scaled = self.columns[:, columns] / self.scale[:, None]
+            self._known[key] = Plain(self, scaled)
+        return self._known[key]
 
     @cached_property
     def log_centre(self) -> float:
@@ -106,13 +148,10 @@ class Further:
         """
         key = products.loud, columns.tobytes()
         if key not in self._known:
-            nuisance = products.sheet.remainder.shape[1] + products.own.shape[1]
             new = (self.columns / products.scale[:, None]).transpose(0, 2, 1)
-            parts = [products.base[:, :nuisance] @ new]
+            parts = [products.nuisance @ new]
             if columns.size:
-                first = int(columns.min())
-                run = products.base[:, nuisance + first : nuisance + int(columns.max()) + 1]
-                parts.append((run @ new)[:, columns - first])
+                parts.append(products.of(columns).scaled @ new)
             flat = new.reshape(-1, new.shape[2])
             self._known[key] = np.concatenate(parts, axis=1), flat.T @ flat
         return self._known[key]
@@ -126,6 +165,8 @@ class Kept:
     """(K,) their places."""
     spread: Array
     """(K,) standard deviations of their coefficients beforehand, at scale one."""
+    taken: Array
+    """(U (F + N), K) what units have of their own takes of them."""
     shared: Array
     """(Q F, K) what the remainder that units share takes of them."""
     gram: Array
@@ -143,15 +184,25 @@ class Kept:
 
 
 @dataclass(frozen=True)
+class Seen:
+    """Columns under the inverse covariance of given sizes, unit by unit."""
+
+    taken: Array
+    """(U, F + N, C) what units have of their own takes of them."""
+    smooth: Array
+    """(U, F, C) products with the remainder, that taken out."""
+    left: Array
+    """(U, C, C) products with each other, that taken out."""
+
+
+@dataclass(frozen=True)
 class Given:
-    """Products of columns under the inverse covariance of given sizes."""
+    """What products under the inverse covariance of given sizes are made of."""
 
     products: Products
     """At the same `loud`."""
-    left: Array
-    """(U, F + K, F + K) products within units, what these have of their own taken out."""
     taken: Array
-    """(U, F + N, F + N + K) what that is."""
+    """(U, F + N, F) what units have of their own takes of the remainder's functions."""
     inner: Array
     """(U, F + N, F + N) lower factor of one and what units have of their own."""
     spread: Array
@@ -174,23 +225,38 @@ class Given:
         """Place of the measured force among the columns."""
         return int(self.products.columns.shape[1]) - 1
 
+    @cached_property
+    def whole(self) -> Seen:
+        """All columns, for what asks for many of them."""
+        return self._seen(np.arange(self.products.columns.shape[1]))
+
+    def _seen(self, columns: Indices) -> Seen:
+        """Return some columns (C,) under the inverse covariance."""
+        plain = self.products.of(columns)
+        taken = np.asarray(
+            np.linalg.solve(self.inner, self.spread[:, None] * plain.across), dtype=float
+        )
+        turned = taken.transpose(0, 2, 1)
+        smooth = plain.across[:, : self.functions] - self.taken.transpose(0, 2, 1) @ taken
+        return Seen(taken, smooth, plain.among - turned @ taken)
+
     def gram(self, groups: Sequence[Group]) -> Array:
         """Return products of groups of columns, one after the other."""
-        f = self.functions
+        seen = self.whole
         ends = np.cumsum([0, *(c.size for c, _ in groups)])
         result = np.empty((ends[-1], ends[-1]))
         shared = []
-        ones = np.ones(self.left.shape[0])
+        ones = np.ones(self.smooth.shape[0])
         for a, (columns, share) in enumerate(groups):
             weight = ones if share is None else share
             here = slice(ends[a], ends[a + 1])
             for b, (others, other) in enumerate(groups[: a + 1]):
                 both = weight * (ones if other is None else other)
-                block = np.tensordot(both, self.left[:, f + columns[:, None], f + others], (0, 0))
+                block = np.tensordot(both, seen.left[:, columns[:, None], others], (0, 0))
                 there = slice(ends[b], ends[b + 1])
                 result[here, there], result[there, here] = block, block.T
             weighted = (self.smooth * weight[:, None]).T
-            each = np.tensordot(weighted, self.left[:, :f, f + columns], (1, 0))
+            each = np.tensordot(weighted, seen.smooth[:, :, columns], (1, 0))
             shared.append(each.reshape(self.outer.shape[0], -1))
         whole = solve_triangular(
             self.outer, np.concatenate(shared, axis=1), lower=True, check_finite=False
@@ -203,10 +269,9 @@ class Given:
         The products of sums over units are the sums of the first less products of sums of the
         second.
         """
-        f = self.functions
-        within = self.left[:, f + columns[:, None], f + columns]
-        each = np.einsum("uq,umk->qmuk", self.smooth, self.left[:, :f, f + columns])
-        shape = self.outer.shape[0], self.left.shape[0], columns.size
+        within = self.whole.left[:, columns[:, None], columns]
+        each = np.einsum("uq,umk->qmuk", self.smooth, self.whole.smooth[:, :, columns])
+        shape = self.outer.shape[0], self.smooth.shape[0], columns.size
         shared = solve_triangular(
             self.outer, each.reshape(shape[0], -1), lower=True, check_finite=False
         )
@@ -214,9 +279,9 @@ class Given:
 
     def within(self, more: Array) -> Array:
         """Return products (U, T, T) of further columns (U, T, R) within units."""
-        p, nuisance = self.products, self.spread.size
+        p = self.products
         new = more / p.scale[:, None]
-        plain = p.base[:, :nuisance] @ new.transpose(0, 2, 1)
+        plain = p.nuisance @ new.transpose(0, 2, 1)
         taken = np.linalg.solve(self.inner, self.spread[:, None] * plain)
         return np.asarray(new @ new.transpose(0, 2, 1) - taken.transpose(0, 2, 1) @ taken)
 
@@ -224,10 +289,11 @@ class Given:
         """Return columns (K,) beside which others are compared, made once at these sizes."""
         key = columns.tobytes() + spread.tobytes()
         if key not in self._kept:
-            f = self.functions
-            within = self.left[:, :f, f + columns]
-            gram = self.gram([(columns, None)])
-            self._kept[key] = Kept(columns, spread, self._across(within), gram)
+            seen = self._seen(columns)
+            shared = self._across(seen.smooth)
+            gram = seen.left.sum(axis=0) - shared.T @ shared
+            taken = seen.taken.reshape(self.inner[..., 0].size, columns.size)
+            self._kept[key] = Kept(columns, spread, taken, shared, gram)
         return self._kept[key]
 
     def beside(self, kept: Kept, further: Further) -> tuple[Array, Array]:
@@ -236,14 +302,11 @@ class Given:
         plain, among = further.plain(p, kept.columns)
         taken = np.linalg.solve(self.inner, self.spread[:, None] * plain[:, :nuisance])
         flat = taken.reshape(-1, taken.shape[2])
-        shared = self._across(
-            plain[:, :f] - self.taken[:, :, :f].transpose(0, 2, 1) @ taken
-        )
+        shared = self._across(plain[:, :f] - self.taken.transpose(0, 2, 1) @ taken)
         among = among - flat.T @ flat - shared.T @ shared
         if not kept.columns.size:
             return np.zeros((0, among.shape[0])), among
-        own = self.taken[:, :, nuisance + kept.columns].reshape(-1, kept.columns.size)
-        across = plain[:, nuisance:].sum(axis=0) - own.T @ flat - kept.shared.T @ shared
+        across = plain[:, nuisance:].sum(axis=0) - kept.taken.T @ flat - kept.shared.T @ shared
         return across, among
 
     def _across(self, left: Array) -> Array:
@@ -252,6 +315,17 @@ class Given:
         each = self.smooth.T @ left.reshape(units, functions * count)
         each = each.reshape(self.smooth.shape[1] * functions, count)
         return np.asarray(solve_triangular(self.outer, each, lower=True, check_finite=False))
+
+
+def _bytes(held: object) -> int:
+    """Return the bytes of arrays that something holds, without those of its products."""
+    if isinstance(held, np.ndarray):
+        return int(held.nbytes)
+    if isinstance(held, dict):
+        return sum(_bytes(v) for v in held.values())
+    if isinstance(held, Plain | Given | Seen | Kept):
+        return sum(_bytes(v) for n, v in vars(held).items() if n != "products")
+    return 0
 
 
 def given(products: Products, sizes: Sizes) -> Given:
@@ -266,28 +340,26 @@ def given(products: Products, sizes: Sizes) -> Given:
     """
     gram, kernel = products.gram, products.sheet.kernel
     functions, own = products.sheet.remainder.shape[1], products.own.shape[1]
-    nuisance = functions + own
     spread = np.concatenate(
         [
             np.full(functions, np.sqrt(_INDEPENDENT) * sizes.remainder),
             np.full(own, sizes.friction),
         ]
     )
-    inner = root_of(gram[:, :nuisance, :nuisance], spread)
-    pulled = spread[:, None] * gram[:, :nuisance]
-    taken = np.asarray(np.linalg.solve(inner, pulled), dtype=float)
-    seen = np.r_[np.arange(functions), np.arange(nuisance, gram.shape[1])]
-    some = taken[:, :, seen]
-    left = gram[:, seen[:, None], seen] - some.transpose(0, 2, 1) @ some
+    inner = root_of(gram, spread)
+    among = gram[:, :, :functions]
+    taken = np.asarray(np.linalg.solve(inner, spread[:, None] * among), dtype=float)
+    left = among[:, :functions] - taken.transpose(0, 2, 1) @ taken
     log_det = 2.0 * float(np.sum(np.log(np.diagonal(inner, axis1=1, axis2=2))))
     smooth = kernel * (np.sqrt(1.0 - _INDEPENDENT) * sizes.remainder)
     units, count = smooth.shape[0], smooth.shape[1] * functions
     pairs = (smooth[:, :, None] * smooth[:, None]).reshape(units, -1)
-    among = left[:, :functions, :functions].reshape(units, -1)
-    square = (pairs.T @ among).reshape(smooth.shape[1], smooth.shape[1], functions, functions)
+    square = (pairs.T @ left.reshape(units, -1)).reshape(
+        smooth.shape[1], smooth.shape[1], functions, functions
+    )
     square = square.transpose(0, 2, 1, 3).reshape(count, count)
     square[np.diag_indices(count)] += 1.0
     outer = np.linalg.cholesky(square)
     log_det += 2.0 * float(np.sum(np.log(np.diag(outer))))
     centre = products.log_centre - 0.5 * log_det
-    return Given(products, left, taken, inner, spread, smooth, outer, centre)
+    return Given(products, taken, inner, spread, smooth, outer, centre)

@@ -140,7 +140,7 @@ def chosen_again(
     least = here.value - less.value - _NATS
     for identifier in (own[0].id, *others):
         trials = trials_of(
-            less.space.scales, assessor.evaluator.coarse, [identifier], less.model, among=among
+            assessor.space.scales, assessor.evaluator.coarse, [identifier], less.model, among=among
         )
         if not trials.entries:  # it needs a term that the model lacks
             continue
@@ -195,7 +195,7 @@ def _tried(
         own = [i for i in ids if (TERMS[i].acts == "force") is acting]
         simulated = any(_simulated(i) for i in own)
         for model in [now] if acting or curved is now else [curved] if simulated else [now, curved]:
-            trials = trials_of(model.space.scales, coarse, own, model.model, among=among)
+            trials = trials_of(assessor.space.scales, coarse, own, model.model, among=among)
             for identifier, found_here in _weighed(assessor, model, trials).items():
                 by_id.setdefault(identifier, []).extend(found_here)
     for w in (w for one in by_id.values() for w in one):

@@ -174,7 +174,7 @@ def is_told_from_noise(assessed: Assessed) -> bool:
 
     Of errors a factor counts, so that one record which is far off does not hide the others.
     """
-    sheet = assessed.space.sheet
+    sheet = assessed.assessor.space.sheet
     records = np.array([u.record for u in sheet.units])
     errors = left_out(assessed.predicting)[1]
     if errors.size != records.max() + 1:  # parts of a lone record

@@ -214,17 +214,15 @@ class Evaluator:
     def _changed(self, model: Composite) -> Array:
         """Return the rows of a model whose motion or force is changed."""
         blocks: list[Array] = []
+        divided = any(p.share is not None for p in model.terms)
+        known: dict[tuple[int, int], Array] = {}
         for place, unit in enumerate(self._sheet.units):
-            test = self._rows[unit.record].motion.test
-            here = model.in_test(test).in_unit(place)
-            key = (unit.record, tuple((t.id, t.coefficient, *t.shape.items()) for t in here.terms))
-            own = self._latest.pop(key, None)
+            at = (unit.record, place if divided else 0)
+            own = known.get(at)
             if own is None:
-                with np.errstate(over="ignore", invalid="ignore"):  # a joint may shake itself apart
-                    own = self._forces[unit.record].of_model(here)
-                while len(self._latest) >= _LATEST * len(self._rows):
-                    self._latest.pop(next(iter(self._latest)))
-            self._latest[key] = own
+                test = self._rows[unit.record].motion.test
+                own = self._of_record(unit.record, model.in_test(test).in_unit(place))
+                known[at] = own
             part = own[None][:, unit.part]
             blocks.append(part if unit.basis is None else part @ unit.basis)
         size = self._sheet.target.shape[1]
@@ -232,6 +230,18 @@ class Evaluator:
         for place, block in enumerate(blocks):
             result[place, : block.shape[1]] = block[0]
         return result
+
+    def _of_record(self, record: int, model: ForceModel) -> Array:
+        """Return the rows (R_r,) of a model in a record; the latest of them are kept."""
+        key = (record, tuple((t.id, t.coefficient, *t.shape.items()) for t in model.terms))
+        own = self._latest.pop(key, None)
+        if own is None:
+            with np.errstate(over="ignore", invalid="ignore"):  # a joint may shake itself apart
+                own = self._forces[record].of_model(model)
+            while len(self._latest) >= _LATEST * len(self._rows):
+                self._latest.pop(next(iter(self._latest)))
+        self._latest[key] = own
+        return own
 
     def slopes(self, model: Composite, numbers: Sequence[Number]) -> Array:
         """Return the change (U, P, R) of a model's rows with each number.

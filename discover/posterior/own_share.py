@@ -14,7 +14,7 @@ def own_share(assessed: Assessed) -> float:
     it is 1 / (1 + (M - 1) R): what a sample of clusters is worth (L. Kish, *Survey Sampling*,
     1965).
     """
-    left = (assessed.space.sheet.target - assessed.local.force) ** 2
+    left = (assessed.assessor.space.sheet.target - assessed.local.force) ** 2
     whole = left.sum(axis=1)
     common = max(1.0 - _lines(assessed) / max(float(whole.sum()), 1e-300), 0.0)
     shown = whole**2 / np.maximum(np.sum(left**2, axis=1), 1e-300)
@@ -28,6 +28,5 @@ def own_lines(assessed: Assessed, parts: int) -> float:
 
 def _lines(assessed: Assessed) -> int:
     """Return the number of lines, of many that models can't tell apart the directions that do."""
-    return sum(
-        u.part.size if u.basis is None else u.basis.shape[1] for u in assessed.space.sheet.units
-    )
+    units = assessed.assessor.space.sheet.units
+    return sum(u.part.size if u.basis is None else u.basis.shape[1] for u in units)

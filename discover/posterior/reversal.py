@@ -22,6 +22,7 @@ from models.constitutive import FittedTerm
 
 _MOST = 3  # curves that a model is given
 _NOTHING = 1e-3  # of friction, below which a curve is left out
+_ROUNDING = 1e-6  # of friction's greatest curve: so small a one is not seen in the records
 _ENOUGH = 0.05  # of a row's noise, that these may leave of the whole curve
 
 
@@ -104,10 +105,21 @@ def with_few_curves(
     friction of each record's own: its numbers are the best so. How surely friction is known the
     whole curve tells, where nothing is left to a remainder.
     """
-    found = reversal_of(assessor, assessed, predicting)
+    ways = [
+        _with_curves(assessor, assessed, predicting, found)
+        for found in reversals_of(assessor, assessed, predicting)
+    ]
+    if not ways:
+        return None, predicting.model
+    found, model, _ = max(ways, key=lambda way: way[2])
+    return found, model
+
+
+def _with_curves(
+    assessor: Assessor, assessed: Assessed, predicting: Assessed, found: Reversal
+) -> tuple[Reversal, Composite, float]:
+    """Return friction by its few curves, the model fitted beside these, and its log density."""
     model, space = predicting.model, predicting.space
-    if found is None:
-        return found, model
     name = found.name
     at = next(i for i, p in enumerate(model.terms) if p.fitted.id == name)
     whole, (first, *more) = model.terms[at], found.terms
@@ -119,6 +131,7 @@ def with_few_curves(
     unaided = [place.sizes(space.own_unit) for place in predicting.place.unaided]
     sizes = max(unaided, key=lambda s: fit_of(space, begun.force, s, None))
     best = fitted(space, assessor.evaluator, begun, sizes, None)
+    value = max(fit_of(space, best.force, s, None) for s in unaided)
     parts = [best.model.terms[i].fitted for i in given]
     sliding = [i for i, t in zip(given, parts, strict=True) if t.id == name]
     surely = None
@@ -131,7 +144,7 @@ def with_few_curves(
         replace(whole, fitted=own) if i == at else p
         for i, p in enumerate(best.model.terms[: len(terms)])
     ]
-    return replace(found, terms=kept, beside=surely), Composite(tuple(aligned))
+    return replace(found, terms=kept, beside=surely), Composite(tuple(aligned)), value
 
 
 def _deviations(
@@ -154,10 +167,13 @@ def _deviations(
     return deviation(sliding), deviation(falling)
 
 
-def reversal_of(
+def reversals_of(
     assessor: Assessor, assessed: Assessed, predicting: Assessed
-) -> Reversal | None:
-    """Return friction as it was found; None where a model has none, or one of its own curve.
+) -> list[Reversal]:
+    """Return friction as it was found; none where a model has none, or one of its own curve.
+
+    By the few curves that come nearest to it as it is, and where these differ by those that do so
+    but for what other terms make of it: how far these can is told by their slopes, and only so.
 
     Parameters
     ----------
@@ -170,7 +186,7 @@ def reversal_of(
     """
     curve, own = assessor.friction, assessor.curve_of(assessed.model)
     if curve is None or own is None:
-        return None
+        return []
     at = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == curve.id]
     space = predicting.space
     main = predicting.model.terms[at[0]].fitted
@@ -194,13 +210,19 @@ def reversal_of(
     if any(main.shape.values()):  # a fitted curve of its own, beside the plainest
         few, columns = [one, *few], np.concatenate([plain[:, None], columns], axis=1)
     others = [i for i, n in enumerate(predicting.local.numbers) if n.term != at[0]]
-    terms = _few(columns, total, few, predicting.local.slopes[:, others])
+    slopes = predicting.local.slopes
+    sets = [_few(columns, total, few, slopes[:, some]) for some in (others, [])]
     without = left + main.coefficient * plain
     sizes = assessed.place.sizes(space.own_unit)
     power = 1.0 if assessed.quiet else own_share(predicting)
     follows, sure, size, interval = _turning(space, sizes, without, whole, curve, power)
-    found = Reversal(curve.id, terms, follows, sure, size, interval, 0.0, fading)
-    return replace(found, differs=sizes.friction / found.sliding) if found.sliding > 0.0 else found
+    result = []
+    for terms in sets[:1] if sets[0] == sets[1] else sets:
+        found = Reversal(curve.id, terms, follows, sure, size, interval, 0.0, fading)
+        if found.sliding > 0.0:
+            found = replace(found, differs=sizes.friction / found.sliding)
+        result.append(found)
+    return result
 
 
 def _few(
@@ -212,7 +234,9 @@ def _few(
     """
     columns, goal = _rows(whole), total.ravel()
     base, _ = np.linalg.qr(_rows(others))
+    whole_size = np.linalg.norm(columns, axis=0).max()
     columns, goal = (part - base @ (base.T @ part) for part in (columns, goal))
+    columns[:, np.linalg.norm(columns, axis=0) < _ROUNDING * whole_size] = 0.0
     every = range(columns.shape[1])
     path = best_subsets(columns, goal, max_terms=_MOST, nonnegative=every, keep=1)
     chosen = None

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from discover.posterior.climb import Place
-from discover.posterior.covariance import Given, Products, Sizes, given
+from discover.posterior.covariance import Given, Products, Sizes
 from discover.posterior.sheet import Sheet
 from discover.rows import RecordRows
 from discover.rows.columns import moved
@@ -18,7 +18,7 @@ from models.terms import Scales, Shape, Term
 
 _CURVE_SCALES = (1.0, 0.3, 0.1, 0.03, 0.01)
 """Sizes of a term with a curve of its own, over that at which it makes the whole force."""
-_MOST_HELD = 2**31
+_MOST_HELD = 2**30
 """Bytes of products at sizes that are held: the oldest are made again where they are asked for."""
 _LEAST_BEGUN = 1e-9
 """Of a coefficient, in its unit, that is zero where a fit starts."""
@@ -71,8 +71,7 @@ class Space:
     columns_of: ColumnsOf
     """Gives the rows (K, R_r) of terms in a record."""
     _products: dict[tuple[float, ...], Products] = field(default_factory=dict)
-    _given: dict[Sizes, Given] = field(default_factory=dict)
-    _held: int = 0
+    _whole: Array | None = None
 
     @property
     def start(self) -> Place:
@@ -94,41 +93,34 @@ class Space:
 
     def given(self, sizes: Sizes) -> Given:
         """Return what products of the columns under the inverse covariance are made of."""
-        known = self._given.pop(sizes, None)  # so that what was asked for last stands last
-        if known is None:
-            products = self._products.get(sizes.loud)
-            if products is None:
+        products = self._products.pop(sizes.loud, None)  # what was asked for last stands last
+        if products is None:
+            self._make_room()
+            if self._whole is None:
                 target = self.sheet.target[:, None]
-                whole = np.concatenate([self.columns, target], axis=1)
-                products = Products(self.sheet, self.own, whole, sizes.loud)
-                self._products[sizes.loud] = products
-            known = given(products, sizes)
-            self._make_room(_bytes(known))
-        self._given[sizes] = known
-        return known
+                self._whole = np.concatenate([self.columns, target], axis=1)
+            products = Products(self.sheet, self.own, self._whole, sizes.loud)
+        self._products[sizes.loud] = products
+        return products.at(sizes)
 
-    def _make_room(self, new: int) -> None:
-        """Let go of products at sizes asked for longest ago, where all take too many bytes."""
-        self._held += new
-        while self._given and self._held > _MOST_HELD:
-            oldest = self._given.pop(next(iter(self._given)))
-            self._held -= _bytes(oldest)
-            if all(g.products is not oldest.products for g in self._given.values()):
-                self._products.pop(oldest.products.loud, None)
+    def _make_room(self) -> None:
+        """Let go of products that were asked for longest ago, where all take too many bytes."""
+        held = {loud: products.kept_bytes for loud, products in self._products.items()}
+        total = sum(held.values())
+        for loud, size in held.items():
+            if total <= _MOST_HELD:
+                return
+            total -= size
+            del self._products[loud]
 
     def forget(self) -> None:
         """Let go of products, which are many: they are made again where they are asked for."""
         self._products.clear()
-        self._given.clear()
-        self._held = 0
+        self._whole = None
 
     def scale(self, places: Indices) -> Array:
         """Return the coefficients at which columns make the whole force."""
         return self.sheet.scale(self.columns[:, places])
-
-
-def _bytes(given: Given) -> int:
-    return int(given.left.nbytes + given.taken.nbytes)
 
 
 def unit(term: Term, shape: Shape) -> FittedTerm:

@@ -65,7 +65,7 @@ def spread_of(assessed: Assessed, predicting: Composite) -> Spread:
     means, covariances = [], []
     beside = local.beside(assessed.space, assessed.curve)
     for i in kept:
-        sizes = places[i].sizes(assessed.space.own_unit)
+        sizes = places[i].sizes(assessed.assessor.space.own_unit)
         found = judged(local, beside, sizes).solved
         means.append(np.where(shaped, start + found.mean, found.mean))
         covariances.append(found.covariance)

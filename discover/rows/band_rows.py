@@ -13,6 +13,7 @@ from models.checks import Array
 _TOLERANCE = 3e-5  # of a record's force: no model is better
 _MOST_HATS = 8  # functions of frequency that a smooth response is made of
 _GROWS = 0.5  # power of the local force's power, with which that of what models miss grows
+_UNSEEN = 1e-24  # of the greatest energy: a function of the remainder that no line shows
 _PER_E_FOLD = 3.0  # levels of force that are told apart, for each factor e of frequency
 _PRODUCTS = ((0, 0), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
 """Powers of displacement and velocity whose products stand for a static law."""
@@ -69,7 +70,8 @@ def _remainder(
         linear = np.concatenate([over * lines, 1j * over * lines])
         found.append((real_rows(np.concatenate([linear, static])), s, w.share))
     energy = sum(share * np.sum(rows**2, axis=1) for rows, _, share in found)
-    unit = np.sqrt(power / energy.size / np.maximum(energy, 1e-300))
+    shown = energy > _UNSEEN * energy.max()
+    unit = np.where(shown, np.sqrt(power / energy.size / np.where(shown, energy, 1.0)), 0.0)
     return np.concatenate([rows * unit[:, None] * s for rows, s, _ in found], axis=1)
 
 

@@ -68,7 +68,8 @@ def prepare(campaign: Campaign, options: StudyOptions) -> Prepared:
 def _choices(options: StudyOptions) -> tuple[tuple[Core, ...], bool, tuple[str, ...]]:
     """Return the structures, whether there may be friction, and what may join."""
     if options.terms is None:
-        extras = [i for i in sorted(TERMS) if i not in TELLING and i != FRICTION]
+        beside = {i for c in CORES for i in c.beside}
+        extras = [i for i in sorted(TERMS) if i not in TELLING - beside and i != FRICTION]
         return CORES, True, tuple(extras)
     ids = [i for i in options.terms if i != FRICTION]
     for identifier in ids:

@@ -168,7 +168,8 @@ def values_line(document: Mapping[str, Any]) -> str:
     """Say the numbers of each band's structure, with intervals; "" where none has a term."""
     texts = []
     for number, band in enumerate(document["bands"], start=1):
-        own = [_value(t) for t in band["terms"] if t["id"] in TELLING]
+        beside = {e["id"] for e in band.get("extras", ())}
+        own = [_value(t) for t in band["terms"] if t["id"] in TELLING - beside]
         place = [f"band {number}"] if len(document["bands"]) > 1 else []
         sure = band.get("probability")
         if sure is not None and sure < SURE:

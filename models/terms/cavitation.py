@@ -10,6 +10,9 @@ from models.terms.scales import Scales
 from models.terms.sensor_clipping import excess
 from models.terms.term import ForceOf, Parameter, Shape, Start, Term
 
+_REACHED = (0.1, 0.96)
+"""Of the greatest force, where a limit lies that is reached: else all that is left is a spring."""
+
 
 def transform(force_of: ForceOf, motion: Motion, coefficient: float, shape: Shape) -> Array:
     """Return the device's force, the fluid's part of which is limited on one side.
@@ -51,7 +54,7 @@ def starts(scales: Scales) -> list[Start]:
             limit=float(c * scales.force), contact=k * scales.omega, loss=0.3, refill=refill,
             lag=lag / scales.omega, side=side,
         )
-        for c in np.linspace(0.1, 0.96, 12)
+        for c in np.linspace(*_REACHED, 12)
         for k, refill, lag in (
             (6.0, 0.0, 0.0), (25.0, 0.0, 0.0), (25.0, 1.0, 0.0), (25.0, 1.0, 0.1),
         )
@@ -72,7 +75,7 @@ TERM = Term(
     transform=transform,
     acts="output",
     parameters=(
-        Parameter("limit", 0.1, 1.0, 0.7, "N", "force"),
+        Parameter("limit", *_REACHED, 0.7, "N", "force"),
         Parameter("softness", 0.0, 0.5, 0.0, "N"),
         Parameter("contact", 0.0, 1e4, 0.0, "rad/s"),
         Parameter("loss", 0.0, 1.0, 0.2, ""),

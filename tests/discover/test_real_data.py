@@ -26,7 +26,7 @@ def coefficients(study):
 
 
 def holds(study, name, value):
-    """Tell whether the interval of a term, or of all of friction, in the only band holds a value."""
+    """Tell whether the interval of a term, or of all friction, in the only band holds a value."""
     (band,) = study.bands
     terms = whole_friction([t.to_dict() for t in band.terms])
     ends = [t["interval"] for t in terms if t["id"] == name]

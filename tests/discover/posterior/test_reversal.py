@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from discover.posterior.model import Composite, Number, Placed
-from discover.posterior.reversal import Fading, reversal_of, with_few_curves
+from discover.posterior.reversal import Fading, reversals_of, with_few_curves
 from discover.posterior.spread import spread_of
 from models.constitutive import FittedTerm
 from tests.discover.posterior.small import (
@@ -53,7 +53,7 @@ def assessed_of(friction, model=RUBBING, **options):
 @pytest.fixture(scope="module")
 def found():
     made = {name: assessed_of(law) for name, law in FRICTIONS.items()}
-    return {n: (a, reversal_of(a.assessor, a, a.predicting)) for n, a in made.items()}
+    return {n: (a, reversals_of(a.assessor, a, a.predicting)[0]) for n, a in made.items()}
 
 
 def test_what_friction_turns_over_is_told(found):
@@ -149,9 +149,9 @@ def test_beside_a_remainder_friction_is_as_sure_as_the_few_curves_that_make_it(f
 
 def test_without_friction_there_is_no_reversal():
     assessed = assessed_of(FRICTIONS["speed"], model_of(inertia=100.0, viscous_damping=700.0))
-    assert reversal_of(assessed.assessor, assessed, assessed.predicting) is None
+    assert not reversals_of(assessed.assessor, assessed, assessed.predicting)
     none = replace(assessed.assessor, friction=None)
-    assert reversal_of(none, assessed, assessed.predicting) is None
+    assert not reversals_of(none, assessed, assessed.predicting)
 
 
 def test_where_it_can_t_be_told_it_is_not_sure():
@@ -161,8 +161,8 @@ def test_where_it_can_t_be_told_it_is_not_sure():
 
     assessor = assessor_of(rows_of(law, ((2.0, 0.003), (2.0, 0.02)), noise=0.05))
     assessed = assessor.assess(RUBBING, assessor.space.start)
-    reversal = reversal_of(assessor, assessed, assessed.predicting)
-    assert reversal is None or 0.5 <= reversal.sure < 0.9
+    found = reversals_of(assessor, assessed, assessed.predicting)
+    assert all(0.5 <= reversal.sure < 0.9 for reversal in found)
 
 
 def test_friction_that_differs_from_record_to_record_has_a_size(found):
@@ -178,7 +178,7 @@ def test_friction_that_differs_from_record_to_record_has_a_size(found):
 
     assessor = assessor_of(rows_of(law, plan, cycles=3))
     assessed = assessor.assess(RUBBING, assessor.space.start)
-    reversal = reversal_of(assessor, assessed, assessed.predicting)
+    reversal = reversals_of(assessor, assessed, assessed.predicting)[0]
     # The sizes' own deviation is a quarter of their mean; sizes are powers of two.
     assert 0.1 < reversal.differs < 0.6
     assert found["speed"][1].differs < 0.05
@@ -264,6 +264,6 @@ def test_a_curve_of_its_own_that_was_fitted_may_be_among_the_few():
     assessed = assessed_of(FRICTIONS["speed"], model)
     fitted_speed = assessed.model.terms[2].fitted.shape["transition_speed"]
     assert fitted_speed == pytest.approx(SPEED, rel=0.05)
-    reversal = reversal_of(assessed.assessor, assessed, assessed.predicting)
+    reversal = reversals_of(assessed.assessor, assessed, assessed.predicting)[0]
     assert reversal.follows == "motion"
     assert reversal.sliding == pytest.approx(40.0, rel=0.03)
