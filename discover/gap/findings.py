@@ -10,9 +10,9 @@ from discover.gap.baseline import Baseline
 from discover.gap.result import NamedEffect
 from discover.gap.search import Search, Stage
 from discover.gap.verdict import CLOSED
-from discover.motion_fit import Observation
 from discover.posterior.local import judged
 from discover.records import Finding
+from discover.rows.held_out import NOT_MET, held_out_findings
 from discover.words import capitalize_first, short_name
 from models.terms.between_tests import ONLY
 
@@ -20,8 +20,6 @@ _WORSE = 1.02  # of a gap that was not fitted, from which a round is said to rai
 _NOISY = 20.0  # percent of a record's force
 _SINGLE = 0.01  # of a record's samples
 _MOST = 0.5  # of what is left
-_NOT_MET = 1.5  # times the noise, and what fitted records are off by
-_FURTHER = 1.02  # of the fitted records' range
 _NOT_THE_LINES = 1.5  # times the noise, from which a gap is not what the tests' lines show
 
 
@@ -54,7 +52,7 @@ def findings_of(
         *_doubts(rounds),
         *_noisy(found.final),
         *_spikes(found.final, noise),
-        *_not_met(found.final, noise),
+        *_not_met(found.final),
         *_unexplained(found, noise, verdict),
     )
 
@@ -256,41 +254,30 @@ def _spikes(at: Stage, noise: float) -> list[Finding]:
     ]
 
 
-def _not_met(at: Stage, noise: float) -> list[Finding]:
+def _not_met(at: Stage) -> list[Finding]:
     """Return which records that were not fitted are met worse than those that were."""
     of_each = _of_every_test(at)
     if of_each:
         return of_each
-    marked = any(a.observation.held_out for a in at.unseen)
-    met = at.gap / max(noise, 1e-300)
+    if any(a.observation.held_out for a in at.unseen):
+        return held_out_findings(at.seen, at.unseen)
     fitted = {a.observation.file: a.relative_percent for a in at.accuracies}
-    off = []
-    for a in at.unseen:
-        usual = met * a.noise_percent if marked else fitted[a.observation.file]
-        if a.noise_percent > 0.0 and a.relative_percent > _NOT_MET * max(usual, a.noise_percent):
-            off.append(a)
+    off = [
+        a for a in at.unseen
+        if a.noise_percent > 0.0
+        and a.relative_percent > NOT_MET * max(fitted[a.observation.file], a.noise_percent)
+    ]
     if not off:
         return []
     worst = max(off, key=lambda a: a.relative_percent / a.noise_percent)
     count, verb = f"{len(off)} of {len(at.unseen)} records", "is" if len(off) == 1 else "are"
     percent = f"{worst.relative_percent:.3g} % (noise {worst.noise_percent:.3g} %)"
-    if not marked:
-        return [
-            Finding(
-                "warning",
-                f"{count} {verb} predicted worse when left out than when fitted, this one to"
-                f" {percent}: what the model says there is known from it alone. Test near it"
-                " again.",
-                worst.observation.file,
-            )
-        ]
-    beyond = _beyond_fitted(worst.observation, [a.observation for a in at.seen])
     return [
         Finding(
             "warning",
-            f"{count} that are held out {verb} met worse than the fitted ones, this one to"
-            f" {percent}" + (f"; it goes beyond them in {beyond}" if beyond else "")
-            + ". What only it shows is not searched for: drop its mark, or test there again.",
+            f"{count} {verb} predicted worse when left out than when fitted, this one to"
+            f" {percent}: what the model says there is known from it alone. Test near it"
+            " again.",
             worst.observation.file,
         )
     ]
@@ -313,18 +300,3 @@ def _of_every_test(at: Stage) -> list[Finding]:
             )
         )
     return result
-
-
-def _beyond_fitted(own: Observation, others: Sequence[Observation]) -> str:
-    """Return in what a record goes beyond the fitted ones, in words; "" where in nothing."""
-    parts = []
-    for name, unit, value, known in (
-        ("amplitude", "mm", 1e3 * own.amplitude, [1e3 * o.amplitude for o in others]),
-        ("frequency", "Hz", own.frequency, [o.frequency for o in others]),
-        ("speed", "m/s", own.speed, [o.speed for o in others]),
-    ):
-        if value > _FURTHER * max(known):
-            parts.append(f"{name} ({value:.3g} {unit}, they up to {max(known):.3g})")
-        elif _FURTHER * value < min(known):
-            parts.append(f"{name} ({value:.3g} {unit}, they from {min(known):.3g})")
-    return " and ".join(parts)

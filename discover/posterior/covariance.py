@@ -85,6 +85,15 @@ class Products:
             self._given[sizes] = given(self, sizes)
         return self._given[sizes]
 
+    def has(self, sizes: Sizes) -> bool:
+        """Tell whether products at these sizes are kept."""
+        return sizes in self._given
+
+    def forget(self) -> None:
+        """Let go of all products, which hold this and are held by it."""
+        self._given.clear()
+        self._known.clear()
+
     @property
     def kept_bytes(self) -> int:
         """Bytes of what was made here and is kept."""

@@ -18,7 +18,7 @@ from models.terms import Scales, Shape, Term
 
 _CURVE_SCALES = (1.0, 0.3, 0.1, 0.03, 0.01)
 """Sizes of a term with a curve of its own, over that at which it makes the whole force."""
-_MOST_HELD = 2**30
+_MOST_HELD = 2**29
 """Bytes of products at sizes that are held: the oldest are made again where they are asked for."""
 _LEAST_BEGUN = 1e-9
 """Of a coefficient, in its unit, that is zero where a fit starts."""
@@ -95,26 +95,32 @@ class Space:
         """Return what products of the columns under the inverse covariance are made of."""
         products = self._products.pop(sizes.loud, None)  # what was asked for last stands last
         if products is None:
-            self._make_room()
             if self._whole is None:
                 target = self.sheet.target[:, None]
                 self._whole = np.concatenate([self.columns, target], axis=1)
             products = Products(self.sheet, self.own, self._whole, sizes.loud)
         self._products[sizes.loud] = products
+        if not products.has(sizes):
+            self._make_room()
         return products.at(sizes)
 
     def _make_room(self) -> None:
         """Let go of products that were asked for longest ago, where all take too many bytes."""
         held = {loud: products.kept_bytes for loud, products in self._products.items()}
         total = sum(held.values())
-        for loud, size in held.items():
+        *others, latest = held
+        for loud in others:
             if total <= _MOST_HELD:
                 return
-            total -= size
-            del self._products[loud]
+            total -= held[loud]
+            self._products.pop(loud).forget()
+        if total > _MOST_HELD:
+            self._products[latest].forget()
 
     def forget(self) -> None:
         """Let go of products, which are many: they are made again where they are asked for."""
+        for products in self._products.values():
+            products.forget()
         self._products.clear()
         self._whole = None
 

@@ -20,6 +20,7 @@ from discover.figure_data import StructureProbability, StudyFigureData
 from discover.motion_fit import Observation
 from discover.records import Campaign
 from discover.rows import Accuracy, accuracy, pooled_percent, record_rows, with_own_values
+from discover.rows.held_out import held_out_findings
 from discover.study.bands import core_probabilities, study_bands
 from discover.study.baselines import baseline_answers
 from discover.study.estimate import Estimates, estimated
@@ -109,15 +110,18 @@ def _study(
     exponent = _exponent(answer) if boundaries else None
     check = _dean(boundaries, exponent, device, chosen)
     nuisance = _nuisance(bands)
-    findings = study_findings(campaign, prepared, answer, bands, nuisance, ends, chosen)
+    fitted = [a for a in accuracies if not a.observation.held_out]
+    held = [a for a in accuracies if a.observation.held_out]
+    findings = (
+        *study_findings(campaign, prepared, answer, bands, nuisance, ends, chosen),
+        *held_out_findings(fitted, held),
+    )
     model = SegmentedModel(
         tuple(
             Band(edges[b], edges[b + 1], m) for b, m in enumerate(_named(estimates, bands))
         ),
         coordinate, chosen.convention, device,
     )  # fmt: skip
-    fitted = [a for a in accuracies if not a.observation.held_out]
-    held = [a for a in accuracies if a.observation.held_out]
     return Study(
         title=campaign.title,
         content_hash=campaign.content_hash,
