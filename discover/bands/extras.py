@@ -169,8 +169,26 @@ def with_several(way: Found, terms: Sequence[tuple[FittedTerm, float]]) -> Found
         What joins, and its log prior, nats.
     """
     joined = [Joined((t,), prior, Step(())) for t, prior in terms]
-    found = searched_with(way.device, (*way.joined, *joined), way.banded.place)
-    return _settled(_settled(found, ""), "")  # what was needed beside others as they were at first
+    found = _needed(searched_with(way.device, (*way.joined, *joined), way.banded.place))
+    return _needed(_settled(found, "")) if len(found.joined) > 1 else found
+
+
+def _needed(way: Found) -> Found:
+    """Return the bands without what has joined and need not; the rest is weighed against nothing.
+
+    Unless it has been weighed already.
+    """
+    for identifier in [j.id for j in way.joined]:
+        now, joined = way.assessed, next(j for j in way.joined if j.id == identifier)
+        own, less = _less(way, joined)
+        if not (is_told(now, own) and is_needed(less, now)):
+            way = _left_with(way, joined, less)
+        elif not joined.step.candidates:
+            here = Candidate(joined.id, now.value + joined.log_prior, now, len(own))
+            step = weighed((here, Candidate("", less.value, less)), less, way.device.seed)
+            new = replace(joined, step=step)
+            way = replace(way, joined=tuple(new if j is joined else j for j in way.joined))
+    return way
 
 
 def _settled(way: Found, newest: str) -> Found:
@@ -199,18 +217,13 @@ def _chosen_again(way: Found, joined: Joined, less: Assessed) -> Found:
     others = [i for i in own[0].term.mistaken_for if i in open_ids]
     among = len(open_ids) + 1
     best = chosen_again(way.device.assessor, now, less, own, prior, others, among)
-    stays = not best.id or best.assessed is None
-    if stays and joined.step.candidates:
+    if not best.id or best.assessed is None:
         return way
-    was = Candidate(joined.id, now.value + prior, now, len(own))
-    step = joined.step
-    if stays or best.id != joined.id or not step.candidates:
-        found = (was,) if stays else (best,) if best.id == joined.id else (best, was)
-        step = weighed((*found, Candidate("", less.value, less)), less, way.device.seed)
-    if stays or best.assessed is None:
-        new = replace(joined, step=step)
-        return replace(way, joined=tuple(new if j.id == new.id else j for j in way.joined))
     terms = tuple(best.assessed.model.terms[i].fitted for i in best.places)
+    step = joined.step
+    if best.id != joined.id:
+        was = Candidate(joined.id, now.value + prior, now, len(own))
+        step = weighed((best, was, Candidate("", less.value, less)), less, way.device.seed)
     new = Joined(terms, best.log_prior, step)
     joined_now = [new if j.id == joined.id else j for j in way.joined]
     return searched_with(way.device, joined_now, best.assessed.place, best.assessed)

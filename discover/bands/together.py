@@ -25,8 +25,8 @@ from models.constitutive import FittedTerm
 from models.cores import TELLING, core_of
 from models.terms import TERMS
 
-_MOST = 6
-"""Terms of a set: a structure's three, friction and two more, say."""
+_MOST = 5
+"""Terms of a set: a structure's two, friction and two more, say."""
 _MUCH = 1e300
 """An error that has no square."""
 

@@ -50,7 +50,7 @@ def found(device: Device) -> Found:
 def _or_one_band(way: Found) -> Found:
     """Return a way that leaves but noise, or one band with one term more where that is better.
 
-    As bands may stand for a term, they are weighed against each, beside each family.
+    As bands may stand for terms, they are weighed against each, and those that join together.
     """
     if not way.quiet or way.banded.bands == 1 or way.device.bands is not None:
         return way
@@ -63,28 +63,28 @@ def _or_one_band(way: Found) -> Found:
 
 
 def _one_band(way: Found) -> Iterator[Found]:
-    """Yield one band throughout: as it is, with terms that join together, and of each family.
+    """Yield one band throughout: with terms that join together, and as it is."""
+    one = _in_one_band(way)
+    bare = searched_with(one.device, (), None) if one.joined else one
+    several = together(bare)
+    if several:
+        yield with_several(bare, several)
+    yield one
+
+
+def _of_each_family(way: Found) -> Iterator[Found]:
+    """Yield one band throughout with the structure of each family that explains most by itself.
 
     What a device has besides, a delay say, may be what makes the wrong family more probable, or a
     remainder that stands for all of it.
     """
     one = _in_one_band(way)
-    yield one
-    bare = searched_with(one.device, (), None) if one.joined else one
-    several = together(bare)
-    if several:
-        yield with_several(bare, several)
-    yield from _of_each_family(way)
-
-
-def _of_each_family(way: Found) -> Iterator[Found]:
-    """Yield one band throughout with the structure of each family that explains most by itself."""
-    one = _in_one_band(way)
     unaided = way.search.unaided(one.banded)
     for family in sorted({family_of(ids_of(v)) for v in one.variants}):
         device = replace(one.device, family=family)
         own = held(device, way.search, unaided)
-        yield replace(one, device=device, banded=own, fewer=(own,))
+        if own.variants != one.banded.variants:
+            yield replace(one, device=device, banded=own, fewer=(own,))
 
 
 def _in_one_band(way: Found) -> Found:
@@ -99,10 +99,11 @@ def _names(way: Found) -> set[str]:
 
 
 def _starts(now: Found) -> Iterator[Found]:
-    """Yield what terms join: the bands as they are found, and one band."""
+    """Yield what terms join: the bands as they are found, one band, and one of each family."""
     yield now
     if now.device.bands in (None, 1):
         yield from _one_band(now)
+        yield from _of_each_family(now)
 
 
 def _grown(way: Found, seen: set[tuple[object, ...]]) -> Found | None:
