@@ -26,7 +26,8 @@ from discover.words import (
     significant,
     zero_possible,
 )
-from models.cores import FRICTION, OTHER, TELLING
+from models.cores import FRICTION, OTHER
+from models.terms import TERMS
 from models.terms.between_tests import ONLY
 
 SURE = 0.8
@@ -169,7 +170,7 @@ def values_line(document: Mapping[str, Any]) -> str:
     texts = []
     for number, band in enumerate(document["bands"], start=1):
         beside = {e["id"] for e in band.get("extras", ())}
-        own = [_value(t) for t in band["terms"] if t["id"] in TELLING - beside]
+        own = [_value(t) for t in band["terms"] if t["id"] not in beside and not _rubs(t)]
         place = [f"band {number}"] if len(document["bands"]) > 1 else []
         sure = band.get("probability")
         if sure is not None and sure < SURE:
@@ -177,6 +178,11 @@ def values_line(document: Mapping[str, Any]) -> str:
         if own:
             texts.append(": ".join(filter(None, (", ".join(place), listed(own)))))
     return f"Values: {'; '.join(texts)}." if texts else ""
+
+
+def _rubs(term: Mapping[str, Any]) -> bool:
+    """Tell whether a term is a part of friction's curve, which has a sentence of its own."""
+    return term["id"] in TERMS and TERMS[term["id"]].curves is not None
 
 
 def _value(term: Mapping[str, Any]) -> str:

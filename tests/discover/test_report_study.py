@@ -275,6 +275,22 @@ def test_friction_of_several_curves_is_told_whole_with_its_interval():
     assert "Friction: 20 N (18 to 22)" in "\n".join(verdict_lines(document))
 
 
+def test_terms_that_were_asked_for_are_values_and_what_stands_beside_is_told_once():
+    document = sample_document()
+    band = document["bands"][0]
+    ids = [t["id"] for t in band["terms"]]
+    assert {"stiffness", "coulomb-friction"} <= set(ids)
+    document["bands"], band["extras"] = [band], []
+    (line,) = (one for one in verdict_lines(document) if one.startswith("Values"))
+    assert "stiffness 1 210 N/m" in line.replace("\u202f", " ")
+    assert "friction" not in line
+    band["extras"] = [t for t in band["terms"] if t["id"] == "stiffness"]
+    for extra in band["extras"]:
+        extra |= {"probability": 0.97, "alternatives": []}
+    (line,) = (one for one in verdict_lines(document) if one.startswith("Values"))
+    assert "stiffness" not in line
+
+
 @pytest.mark.parametrize("verdict", ["consistent", "contradicted", "undetermined", "no-boundary"])
 def test_dean_line_leads_with_the_verdict(verdict):
     document = sample_document()
