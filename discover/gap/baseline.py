@@ -103,7 +103,9 @@ def term_ids(text: str, *, where: str = "--model") -> tuple[str, ...]:
         )
         if term.column is None or scaled:
             raise InputError(
-                "term of a baseline", expected="an added force of the motion now", found=name,
+                "term of a baseline",
+                expected="one that only adds a force and has no size of its own to fit (the search"
+                " adds the others)", found=name,
                 where=where,
             )
     return ids
