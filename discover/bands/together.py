@@ -32,7 +32,7 @@ _MUCH = 1e300
 
 
 def together(way: Found) -> list[tuple[FittedTerm, float]]:
-    """Return what joins a way at once, with the log prior (nats) of each: none, or several terms.
+    """Return the terms that join a way at once, if any, with the log prior (nats) of each.
 
     Of each number of terms the set with the least misfit is taken, of these the one that predicts
     records left out best; where nothing can be left out the largest, as others than this tell what

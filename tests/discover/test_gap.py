@@ -189,7 +189,7 @@ def test_bad_baselines_are_refused_in_words():
         term_ids("fit:inertia,nonsense")
     with pytest.raises(InputError, match="twice"):
         term_ids("fit:inertia,inertia")
-    with pytest.raises(InputError, match="added force"):
+    with pytest.raises(InputError, match="only adds a force"):
         term_ids("fit:inertia,time-delay")
     with pytest.raises(InputError, match="effect"):
         close_gap(campaign(device), BASE, effects=("nonsense",))
