@@ -44,10 +44,7 @@ OTHER = "other"
 """Name of what none of the structures is."""
 
 CORES = (
-    Core(
-        "FOIM", "fractional", ("fractional-derivative",),
-        beside=("inertia", "viscous-damping", "quadratic-damping"),
-    ),
+    Core("FOIM", "fractional", ("fractional-derivative",), beside=("inertia",)),
     Core("IOIM-linear", "integer", ("inertia",), ("viscous-damping",)),
     Core("IOIM-laminar", "integer", ("inertia", "quadratic-damping"), ("viscous-damping",)),
     Core(
