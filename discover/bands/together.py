@@ -27,8 +27,6 @@ from models.terms import TERMS
 
 _MOST = 5
 """Terms of a set: a structure's two, friction and two more, say."""
-_MUCH = 1e300
-"""An error that has no square."""
 
 
 def together(way: Found) -> list[tuple[FittedTerm, float]]:
@@ -124,5 +122,5 @@ def _errors(columns: Array, goal: Array, parts: Indices) -> Array:
         with np.errstate(over="ignore", invalid="ignore"):  # of columns the others hardly show
             left = goal[inside].ravel() - own @ values
             error = float(left @ left) / max(float(np.sum(goal[inside] ** 2)), 1e-300)
-        found.append(error if np.isfinite(error) else _MUCH)
+        found.append(error if np.isfinite(error) else np.inf)
     return np.array(found)

@@ -172,8 +172,8 @@ def reversals_of(
 ) -> list[Reversal]:
     """Return friction as it was found; none where a model has none, or one of its own curve.
 
-    By the few curves that come nearest to it as it is, and where these differ by those that do so
-    but for what other terms make of it: how far these can is told by their slopes, and only so.
+    By the few curves that come nearest to it but for what other terms make of it: how far these
+    can is told by their slopes, and only so. Where these differ, also by those that do so as it is.
 
     Parameters
     ----------
@@ -234,9 +234,9 @@ def _few(
     """
     columns, goal = _rows(whole), total.ravel()
     base, _ = np.linalg.qr(_rows(others))
-    whole_size = np.linalg.norm(columns, axis=0).max()
+    greatest = np.linalg.norm(columns, axis=0).max()
     columns, goal = (part - base @ (base.T @ part) for part in (columns, goal))
-    columns[:, np.linalg.norm(columns, axis=0) < _ROUNDING * whole_size] = 0.0
+    columns[:, np.linalg.norm(columns, axis=0) < _ROUNDING * greatest] = 0.0
     every = range(columns.shape[1])
     path = best_subsets(columns, goal, max_terms=_MOST, nonnegative=every, keep=1)
     chosen = None

@@ -112,10 +112,13 @@ def _study(
     nuisance = _nuisance(bands)
     fitted = [a for a in accuracies if not a.observation.held_out]
     held = [a for a in accuracies if a.observation.held_out]
-    findings = (
-        *study_findings(campaign, prepared, answer, bands, nuisance, ends, chosen),
-        *held_out_findings(fitted, held),
-    )
+    findings = study_findings(campaign, prepared, answer, bands, nuisance, ends, chosen)
+    with_own = _with_own_values(
+        [(o, estimates.models[b]) for o, b in zip(prepared.observations, place, strict=True)
+         if o.held_out]
+    )  # fmt: skip
+    if with_own is None:  # else it is known why others are met worse
+        findings = (*findings, *held_out_findings(fitted, held))
     model = SegmentedModel(
         tuple(
             Band(edges[b], edges[b + 1], m) for b, m in enumerate(_named(estimates, bands))
@@ -129,10 +132,7 @@ def _study(
         coordinate=coordinate,
         relative_error_percent=pooled_percent(fitted),
         held_out_relative_error_percent=pooled_percent(held) if held else None,
-        held_out_with_own_values_percent=_with_own_values(
-            [(o, estimates.models[b]) for o, b in zip(prepared.observations, place, strict=True)
-             if o.held_out]
-        ),
+        held_out_with_own_values_percent=with_own,
         identifiable=all(len(b.equivalents) < 2 for b in bands),
         findings=findings,
         bands=bands,

@@ -48,6 +48,18 @@ def test_published_values_of_emps_lie_in_the_intervals_of_its_published_terms(pu
     found = coefficients(published)
     assert found["inertia"] == pytest.approx(95.1, rel=0.01)
     assert found["force-offset"] == pytest.approx(-3.19, rel=0.05)
+
+
+@needs_data
+@pytest.mark.xfail(strict=True, reason="196.8 N s/m and 21.08 N, beside friction that falls")
+def test_emps_gives_its_published_damping_and_friction_for_its_published_terms(published):
+    found = coefficients(published)
+    assert found["viscous-damping"] == pytest.approx(203.0, rel=0.03)
+    assert found["coulomb-friction"] == pytest.approx(20.4, rel=0.03)
+
+
+@needs_data
+def test_the_intervals_of_emps_s_damping_and_friction_are_narrow(published):
     for term in published.bands[0].terms:
         if term.fitted.id in ("viscous-damping", "coulomb-friction"):
             assert term.interval[1] - term.interval[0] < 0.4 * term.fitted.coefficient

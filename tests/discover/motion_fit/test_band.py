@@ -200,9 +200,12 @@ def test_what_a_resonance_makes_of_the_motion_is_no_noise():
     assert 0.8 < np.median(ratios) < 1.25
 
 
-def test_the_memory_of_a_resonating_device_is_hardly_noise():
-    """Its noise is by far less than what mass, damping and a spring leave of a random force."""
-    rng, size, step = np.random.default_rng(0), 8192, 1.0 / 750.0
+def noise_of_memory(seed):
+    """Return a resonating device's noise over what mass, damping and a spring leave of its force.
+
+    The force is random, and the device has a memory.
+    """
+    rng, size, step = np.random.default_rng(seed), 8192, 1.0 / 750.0
     push = random_force(20.0, size, step, rng)
     x = driven(push, step, 8)
     turn = 2j * np.pi * np.fft.rfftfreq(size, step)
@@ -212,7 +215,19 @@ def test_the_memory_of_a_resonating_device_is_hardly_noise():
         "r.csv", step * np.arange(size), push + 0.02 * rng.standard_normal(size),
         x + 8e-7 * rng.standard_normal(size),
     )
-    assert observe_band(record, slice(None), "random").force_noise < 0.5 * straight.std()
+    return observe_band(record, slice(None), "random").force_noise / straight.std()
+
+
+def test_the_memory_of_a_resonating_device_is_hardly_noise():
+    assert noise_of_memory(0) < 0.5
+
+
+@pytest.mark.xfail(strict=True, reason="of 24 draws 7 have all of their force called noise")
+def test_the_memory_of_a_resonating_device_is_hardly_noise_in_any_record():
+    """In the middle over records far less; in none the force counts as noise."""
+    ratios = [noise_of_memory(seed) for seed in range(8)]
+    assert np.median(ratios) < 0.5
+    assert max(ratios) < 1.0
 
 
 def test_a_drive_of_few_lines_has_all_of_them_in_its_band():
