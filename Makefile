@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 .PHONY: study test sweep check bench calibration blind notebooks docs clean
 
 study: $(VENV)/.installed ## discover on the shipped campaign; prints the verdict and the report's path
-	@$(BIN)/inerter discover --jobs $(JOBS)
+	@$(BIN)/inerter discover # its files are small: one process has read them before others have begun
 
 test: $(VENV)/.installed-dev ## all tests and doctests but the sweeps
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m 'not sweep'

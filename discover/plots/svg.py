@@ -12,6 +12,7 @@ from xml.sax.saxutils import escape, quoteattr
 import matplotlib
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter
 
@@ -49,8 +50,11 @@ def to_svg(figure: Figure, *, name: str, title: str) -> Drawing:
     (True, True)
     """
     stream = StringIO()
+    dots_per_inch = figure.dpi
     with matplotlib.rc_context({"svg.hashsalt": name}):
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+        # savefig would draw everything twice, the first time for the layout alone.
+        FigureCanvasSVG(figure).print_svg(stream, metadata={"Date": None, "Creator": None})
+    figure.dpi = dots_per_inch  # the canvas leaves its own
     text = stream.getvalue()
     text = text[text.index("<svg") :].strip()
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
