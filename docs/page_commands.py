@@ -27,9 +27,15 @@ def commands_page() -> str:
         own = command.make_context(name, [], parent=context, resilient_parsing=True)
         usage = command.collect_usage_pieces(own)
         lines += [f"## inerter {name}", "", *_paragraphs(command.help), ""]
-        lines += ["```text", " ".join(["inerter", name, *usage]), "```", ""]
+        lines += ["```text", _spelled(" ".join(["inerter", name, *usage])), "```", ""]
         lines += [line for p in command.params for line in _entry(p, own)]
     return "\n".join(lines)
+
+
+def _spelled(written: str) -> str:
+    """Return an argument as it is typed, without typer's braces and types (``<list[Path]>``)."""
+    plain = re.sub(r"\{([^{}]*)\}(?:\.\.\.)?| <[^<>]+>", r"\1", written)
+    return plain.replace("[[", "[").replace("]]", "]")
 
 
 def _paragraphs(text: str | None) -> list[str]:
@@ -57,4 +63,4 @@ def _entry(parameter: Any, context: Any) -> list[str]:
         text, _, default = text.rstrip(".").rpartition(" [default: ")
         notes = [f"default: {default.rstrip(']')}", *notes]
     told = f" ({'; '.join(_plain(n) for n in notes)})" if notes else ""
-    return [f"`{written}`", f": {_plain(text.rstrip('.'))}{told}.", ""]
+    return [f"`{_spelled(written)}`", f": {_plain(text.rstrip('.'))}{told}.", ""]

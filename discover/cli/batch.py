@@ -36,7 +36,10 @@ Campaigns = Annotated[
     ),
 ]
 Out = Annotated[
-    Path, typer.Option("-o", "--out", help="Folder of all results; what is done there stays.")
+    Path,
+    typer.Option(
+        "-o", "--out", metavar="FOLDER", help="Folder of all results; what is done there stays."
+    ),
 ]
 Model = Annotated[
     str | None,

@@ -28,6 +28,7 @@ Out = Annotated[
     typer.Option(
         "-o",
         "--out",
+        metavar="FOLDER",
         help="Folder of the results, written whole or not at all"
         " [default: ./inerter-out/<verb>-<campaign>, of gap with the model's name].",
         show_default=False,
