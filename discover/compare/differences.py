@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from discover.compare.side import Side, SideBand
+from models.terms import TERMS
 
 _NORMAL = 1.959963984540054  # of 95 %, two-sided
 _LEVEL = 0.05
@@ -148,8 +149,7 @@ def _difference(
     values = tuple(None if t is None or t.get(quantity) is None else float(t[quantity])
                    for t in terms)  # fmt: skip
     intervals = tuple(_pair(t.get(key)) if t is not None else None for t in terms)
-    units = tuple(str(t["unit"]) if t is not None and quantity == "coefficient" else ""
-                  for t in terms)  # fmt: skip
+    units = tuple(_unit(t, quantity) for t in terms)
     there = [i for i, v in enumerate(values) if v is not None]
     p, why = None, ""
     if len(there) < 2:
@@ -164,6 +164,16 @@ def _difference(
         if p is None and all(intervals[i] is None for i in there):
             why = "none has an interval"
     return Difference(band, identifier, quantity, units, values, intervals, p, why)
+
+
+def _unit(term: Entry | None, quantity: str) -> str:
+    if term is None:
+        return ""
+    if quantity == "coefficient":
+        return str(term["unit"])
+    known = TERMS.get(str(term["id"]))
+    named = () if known is None else known.parameters
+    return next((p.unit for p in named if p.name == quantity), "")
 
 
 def _pair(ends: Any) -> Interval | None:

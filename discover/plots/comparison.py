@@ -39,7 +39,7 @@ def side_by_side(
         return None
     step = 1.0 / (len(names) + 1)
     with house_style():
-        figure = new_figure(620, 110 + _ROW * (len(names) + 1) * len(rows))
+        figure = new_figure(620, 110 + _ROW * max(len(names) + 1, 3) * len(rows))
         axes = figure.add_subplot()
         axes.axvline(0.0, color=MUTED, linewidth=0.8)
         for number, name in enumerate(names):
@@ -63,12 +63,15 @@ def side_by_side(
                 lines += axes.plot([low, high], [place, place], color=look["color"], linewidth=1.6)
             series(lines, name)
         axes.set_ylim(len(rows), 0.0)
-        axes.set_yticks([r + 0.5 for r in range(len(rows))], [label for label, _ in rows])
+        # The band on a line of its own: beside the name it leaves the axes no room.
+        axes.set_yticks(
+            [r + 0.5 for r in range(len(rows))], [t.replace(" (", "\n(") for t, _ in rows]
+        )
         axes.tick_params(axis="y", length=0, labelcolor=INK)
         axes.grid(visible=False, axis="y")
         for edge in range(1, len(rows)):
             axes.axhline(edge, color="#e3e8ee", linewidth=0.8)
-        axes.set_xlabel("From the mean of the answers (%)")
+        axes.set_xlabel("From the mean (%)")
         handles, legend = axes.get_legend_handles_labels()
         legend_above(figure, handles, legend, ncols=3)
         return to_svg(figure, name="side-by-side", title="Coefficients side by side")

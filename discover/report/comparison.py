@@ -76,7 +76,7 @@ def structures(side: Mapping[str, Any]) -> str:
 def quantity_name(quantity: Mapping[str, Any]) -> str:
     """Return a quantity in words, with its band where there are several."""
     term = short_name(quantity["term"])
-    what = quantity["quantity"].replace("_", " ")
+    what = quantity["quantity"].replace("_", " ").replace("stribeck", "Stribeck")
     name = term if what == "coefficient" else f"{what} of {term}"
     return name if quantity["band"] == "everywhere" else f"{name} ({quantity['band']})"
 
