@@ -58,6 +58,10 @@ def test_every_page_stands_in_the_site_s_contents():
     assert sorted(p.stem for p in DOCS.glob("*.md") if p.stem != "index") == sorted(listed)
 
 
+def test_the_readme_is_short():
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 900
+
+
 @pytest.mark.parametrize("page", PAGES, ids=named)
 def test_verbs_and_options_that_a_page_names_are_the_program_s(page, capsys):
     for language, text in blocks(page):

@@ -74,6 +74,22 @@ def test_coefficients_of_different_units_are_not_compared():
     assert order.differs is True
 
 
+def test_a_shape_has_its_own_unit():
+    friction = {"id": "coulomb-friction", "coefficient": 60.0, "unit": "N", "interval": (59.0, 61.0),
+                "transition_speed": 1e-3, "transition_speed_interval": (9e-4, 1.1e-3)}
+    both = side("a", ("IOIM-linear", (friction,))), side("b", ("IOIM-linear", (friction,)))
+    units = {d.quantity: d.units for d in differences(both)}
+    assert units == {"coefficient": ("N", "N"), "transition_speed": ("m/s", "m/s")}
+
+
+def test_the_axes_of_the_picture_keep_their_room_beside_names_of_bands():
+    values = [{"value": v, "interval": None, "unit": "kg"} for v in (1.0, 1.2)]
+    label = "Stribeck velocity of Stribeck friction (where IOIM-turbulent holds)"
+    drawn = side_by_side([{"values": values}], ("a", "b"), labels=[label])
+    (axes,) = drawn.figure.axes
+    assert axes.get_position().width > 0.5
+
+
 def test_what_may_be_nothing_is_in_the_table_and_not_in_the_picture():
     def coulomb(interval):
         return {"id": "coulomb-friction", "coefficient": 5.0, "unit": "N", "interval": interval}
