@@ -53,7 +53,8 @@ def to_svg(figure: Figure, *, name: str, title: str) -> Drawing:
     dots_per_inch = figure.dpi
     with matplotlib.rc_context({"svg.hashsalt": name}):
         # savefig would draw everything twice, the first time for the layout alone.
-        FigureCanvasSVG(figure).print_svg(stream, metadata={"Date": None, "Creator": None})
+        canvas: Any = FigureCanvasSVG(figure)  # without types
+        canvas.print_svg(stream, metadata={"Date": None, "Creator": None})
     figure.dpi = dots_per_inch  # the canvas leaves its own
     text = stream.getvalue()
     text = text[text.index("<svg") :].strip()

@@ -75,8 +75,9 @@ def test_coefficients_of_different_units_are_not_compared():
 
 
 def test_a_shape_has_its_own_unit():
-    friction = {"id": "coulomb-friction", "coefficient": 60.0, "unit": "N", "interval": (59.0, 61.0),
-                "transition_speed": 1e-3, "transition_speed_interval": (9e-4, 1.1e-3)}
+    friction = {"id": "coulomb-friction", "coefficient": 60.0, "unit": "N",
+                "interval": (59.0, 61.0), "transition_speed": 1e-3,
+                "transition_speed_interval": (9e-4, 1.1e-3)}
     both = side("a", ("IOIM-linear", (friction,))), side("b", ("IOIM-linear", (friction,)))
     units = {d.quantity: d.units for d in differences(both)}
     assert units == {"coefficient": ("N", "N"), "transition_speed": ("m/s", "m/s")}
