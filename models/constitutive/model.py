@@ -36,6 +36,8 @@ class FittedTerm:
     ('N s/m', 'N')
     >>> FittedTerm("fractional-derivative", 580.0, {"order": 1.89}).unit
     'N s^1.89/m'
+    >>> FittedTerm("coulomb-friction", 400.0, {"transition_speed": 0.001, "presliding": 0.0})
+    FittedTerm('coulomb-friction', 400.0, {'transition_speed': 0.001})
     """
 
     id: str
@@ -53,6 +55,15 @@ class FittedTerm:
         shape = self.term.shape(self.shape)
         object.__setattr__(self, "shape", MappingProxyType(shape))
         number(f"coefficient of {self.id}", self.coefficient)
+
+    def __repr__(self) -> str:
+        """Return what makes it again, without what is at its default: a friction has eight."""
+        defaults = {
+            p.name: p.default for p in self.term.parameters if not p.scaled_by or p.default == 0.0
+        }
+        shape = {n: v for n, v in self.shape.items() if defaults.get(n) != v}
+        values = (self.id, self.coefficient, *([shape] if shape else []))
+        return f"FittedTerm({', '.join(map(repr, values))})"
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle by value (a mapping proxy can't be pickled)."""

@@ -21,6 +21,7 @@ from models.constitutive import (
 )
 from models.device import Device
 from models.motion import sine_motion
+from models.terms import TERMS
 
 TWELVE, TEN = Device.preset("device-12"), Device.preset("device-10")
 
@@ -233,3 +234,11 @@ def test_shapes_can_not_be_changed_behind_a_model_s_back():
     term = FittedTerm("fractional-derivative", 1.0, {"order": 1.5})
     with pytest.raises(TypeError):
         term.shape["order"] = 1.0
+
+
+@pytest.mark.parametrize("identifier", sorted(TERMS))
+def test_a_term_s_repr_makes_it_again(identifier):
+    shape = {p.name: p.default for p in TERMS[identifier].parameters}
+    for given in (shape, {n: 1.1 * v + 0.01 for n, v in shape.items()}):
+        fitted = FittedTerm(identifier, 2.5, given)
+        assert eval(repr(fitted)) == fitted
