@@ -116,13 +116,20 @@ def _failed(error: Exception) -> int:
         return _complain(f"{name}{error.strerror or error}", BAD_INPUT)
     usage = getattr(error, "format_message", None)
     if usage is not None:  # typer's own complaints about options
-        return _complain(str(usage()), BAD_INPUT)
+        missing = getattr(error, "param", None) if _is_missing(error) else None
+        wanted = f" Expected: {text}" if (text := getattr(missing, "help", None)) else ""
+        return _complain(f"{usage()}{wanted}", BAD_INPUT)
     if os.environ.get("INERTER_DEBUG"):
         traceback.print_exc()
     return _complain(
         f"a fault in this program: {type(error).__name__}: {error}; INERTER_DEBUG=1 shows where",
         INTERNAL_ERROR,
     )
+
+
+def _is_missing(error: Exception) -> bool:
+    """Tell whether typer complains of what was not given; its class stands in no public module."""
+    return type(error).__name__ == "MissingParameter"
 
 
 def _run(given: Sequence[str]) -> object:

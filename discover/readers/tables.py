@@ -38,6 +38,7 @@ _RECORD = (
     "file", "frequency", "amplitude", "held_out", "sheet", "group", "channel", "range",
     "sampling_rate", "units",
 )  # fmt: skip
+_ABOVE = "; that of the campaign stands above the first [table]"
 _SYSTEM = {"mass": "mass", "stiffness": "stiffness"}
 
 
@@ -51,7 +52,7 @@ def _table(value: object, keys: Iterable[str], *, where: str) -> Mapping[str, An
             raise InputError(
                 f"key {key!r}",
                 expected="one of " + ", ".join(listed),
-                found="an unknown key" + nearest(key, listed),
+                found="an unknown key" + (_ABOVE if key == "title" else nearest(key, listed)),
                 where=f"{_FILE} {where}",
             )
     return value

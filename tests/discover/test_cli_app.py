@@ -29,6 +29,7 @@ def test_every_verb_is_listed_with_what_it_does(capsys):
         (["discover", "--order", "1"], "--order"),
         (["nothing"], "nothing"),
         (["synth"], "CAMPAIGN-OUT"),
+        (["gap", "records"], "Missing option '--model'. Expected: A model.json, ioim-laminar"),
         (["discover", "--bands", "0"], "--bands"),
         (["discover", "--jobs", "many"], "--jobs"),
         (["discover", "--convention", "mine"], "--convention: convention must be one of paper, s"),

@@ -239,6 +239,6 @@ def test_shapes_can_not_be_changed_behind_a_model_s_back():
 @pytest.mark.parametrize("identifier", sorted(TERMS))
 def test_a_term_s_repr_makes_it_again(identifier):
     shape = {p.name: p.default for p in TERMS[identifier].parameters}
-    for given in (shape, {n: 1.1 * v + 0.01 for n, v in shape.items()}):
-        fitted = FittedTerm(identifier, 2.5, given)
+    for values in (shape, {n: 1.1 * v + 0.01 for n, v in shape.items()}):
+        fitted = FittedTerm(identifier, 2.5, values)
         assert eval(repr(fitted)) == fitted

@@ -150,6 +150,7 @@ def test_hash_depends_on_the_bytes_and_not_on_the_place(tmp_path: Path) -> None:
          r"\[device.fluid\]: viscosity must be .* a unit of kinematic viscosity"),
         ('[device]\npreset = "device-12"\n[device.fluid]\nviscosty = "1 Pa*s"\n' + ONE,
          r"\[device.fluid\]: key 'viscosty' .* mean 'viscosity'"),
+        ('[rig]\ntitle = "x"\n' + ONE, r"key 'title' .* campaign stands above the first \[table\]"),
         ('[rig]\nmax_strok = "1 mm"\n' + ONE, r"\[rig\]: key 'max_strok' .* mean 'max_stroke'"),
         ('[rig]\nmax_stroke = "-1 mm"\n' + ONE, r"\[rig\]: max_stroke must be a finite number > 0"),
         ('[rig]\nmax_acceleration = "5 g"\n' + ONE, r"a unit of mass \(standard gravity is g_0\)"),
