@@ -25,10 +25,11 @@ _LEAST = 1e-300  # of a probability, so that it has a logarithm
 def told(found: Found) -> Found:
     """Return the answer; where more is left than noise it is told with less surety.
 
-    The likelihood of each structure is taken to a power, `Found.power`.
+    The likelihood of each structure is taken to a power, `Found.power`. A way that was looked for
+    beside one family is told with the most probable structure of any.
     """
     if found.quiet:
-        return found
+        return found if found.device.family is None else found.with_values(found.banded.by_variant)
     power = found.power
     alike = [way for way in found.rivals if way.banded.bands == found.banded.bands == 1]
     first, *others = (_at_power(way, power) for way in (found, *alike))

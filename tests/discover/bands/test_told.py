@@ -12,6 +12,7 @@ from discover.posterior.spread import idle
 from discover.study import StudyOptions
 from discover.study.bands import core_probabilities
 from discover.study.prepare import prepare
+from models.cores import core_of
 from tests.discover.exact import campaign
 
 
@@ -93,3 +94,20 @@ def test_structures_are_weighed_over_all_that_may_be_beside_them(ways):
     for core, probability in mixed.items():
         between = sorted((own.get(core, 0.0), others.get(core, 0.0)))
         assert between[0] - 0.03 < probability < between[1] + 0.03
+
+
+def test_what_is_told_has_the_terms_of_the_structure_that_is_most_probable():
+    """A way may have been looked for beside the other family."""
+    def law(amplitude, omega, theta):
+        v, a = amplitude * omega * np.cos(theta), -amplitude * omega**2 * np.sin(theta)
+        return 35.0 * a + 1200.0 * v
+
+    records = campaign(law, frequencies=(1.0,), amplitudes=(0.01,), noise=0.03)
+    device = replace(prepare(records, StudyOptions()).device, extras=(), bands=1)
+    beside = searched_with(replace(device, family="fractional"), (), None)
+    assert beside.quiet
+    answer = told(beside)
+    chances = core_probabilities(answer, 0)
+    stated = answer.variants[answer.banded.variants[0]]
+    assert chances[stated.core] == max(chances.values())
+    assert core_of([p.fitted.id for p in answer.assessed.model.terms]) == stated.core
