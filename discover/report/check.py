@@ -185,7 +185,7 @@ def _plan_lines(document: Mapping[str, Any]) -> list[str]:
         if s["rank"] < s["columns"]
     ]
     lines += [f"Can't be told apart: {why}." for why in _reasons(document["inseparable"])]
-    if not document["inseparable"]:
+    if document["passed"] and not document["inseparable"]:
         lines.append("Plan: these tests can tell the four structures apart at their noise.")
     return lines
 
