@@ -122,6 +122,11 @@ def next_step(document: Mapping[str, Any], *, campaign: str) -> str:
     study = f"`inerter discover {campaign}`"
     if not document["passed"]:
         return f"mend what is in error, then run {again} again."
+    if any(f.get("about") == "unit" for f in document["findings"]):
+        return (
+            f"see whether the unit in question is right; once it is, run {again} again. {study}"
+            " works as it is, with sizes as read."
+        )
     if not document["inseparable"]:
         return f"{study} finds which structure the records support."
     as_it_is = f"{study} works as it is, and leaves such pairs open."
