@@ -83,6 +83,7 @@ COMMON = {
     "findings[].level": '"error", "warning" or "note".',
     "findings[].text": "What was found and what to do about it.",
     "findings[].record": "The record that it concerns; absent for the whole campaign.",
+    "findings[].about": '"unit" where it doubts that a column is in the unit as read; else absent.',
 }
 EVERYWHERE = {
     "id": "Id of the term or effect.",

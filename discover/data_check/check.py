@@ -15,6 +15,7 @@ from discover.motion_fit import observe_all
 from discover.record_checks import Differing, RecordCheck, check_records, differing_records
 from discover.records import Campaign, Finding, checked_campaign
 from discover.rows import RecordRows, record_rows
+from discover.words import quantity
 
 _LEVELS = ("error", "warning", "note")
 _SAME = 0.05  # relative difference below which two amplitudes are one
@@ -57,6 +58,8 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
     structures: tuple[Conditioning, ...] = ()
     pairs: tuple[Pair, ...] = ()
     inseparable: tuple[Inseparable, ...] = ()
+    sizes = size_findings(campaign, judged.records)
+    doubted = any(f.about == "unit" for f in (*judged.findings, *sizes))
     more: AddedTest | None = None
     if campaign.fitted:
         rows = tuple(record_rows(o) for o in observations)
@@ -65,10 +68,10 @@ def check_campaign(campaign: Campaign, *, seed: int = 0, jobs: int = 1) -> DataC
         structures = conditioning(plan)
         pairs = expected_pairs(plan)
         inseparable = inseparable_pairs(pairs, plan)
-        more = added_test(pairs, plan, campaign.rig)
+        more = None if doubted else added_test(pairs, plan, campaign.rig)
     found = [
         *judged.findings,
-        *size_findings(campaign, judged.records),
+        *sizes,
         *(d.finding for d in differing),
         *_plan_findings(judged.records),
     ]
@@ -107,7 +110,7 @@ def _plan_findings(records: Sequence[RecordCheck]) -> list[Finding]:
         found.append(
             Finding(
                 "warning",
-                f"all tests run at {1e3 * amplitudes[0]:.3g} mm: a boundary that follows the Dean"
+                f"all tests run at {quantity(amplitudes[0], 'm')}: a boundary that follows the Dean"
                 " number can't be told from one that is fixed in frequency.",
             )
         )

@@ -164,7 +164,8 @@ class DataCheck:
     inseparable: tuple[Inseparable, ...]
     """Pairs of structures that these tests can't tell apart."""
     added_test: AddedTest | None
-    """What would help; None where every pair is separable or no other test is within limits."""
+    """What would help; None where every pair is separable, no other test is within limits
+    or a unit is in doubt."""
     figure_data: PlanFigureData
     """What the pictures need besides."""
 

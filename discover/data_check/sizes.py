@@ -58,12 +58,12 @@ def size_findings(campaign: Campaign, checks: Sequence[RecordCheck]) -> list[Fin
         if own and other and _out_of_proportion(own / other):
             sizes = f"is {1e3 * own:.3g} mm", f"{1e3 * other:.3g} mm"
             text = "its displacement amplitude " + _compared(*sizes, own / other, unit="m")
-            found.append(Finding("warning", text, record.file))
+            found.append(Finding("warning", text, record.file, about="unit"))
         own, other = forces[index], _others(forces, index)
         if own and other and _force_out_of_proportion(per_motion, index, ratio=own / other):
             sizes = f"is {own:.3g} N root mean square", f"{other:.3g} N"
             text = "its force " + _compared(*sizes, own / other, unit="N")
-            found.append(Finding("warning", text, record.file))
+            found.append(Finding("warning", text, record.file, about="unit"))
     return found
 
 

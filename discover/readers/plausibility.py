@@ -106,7 +106,7 @@ def implausible(
     text = "all records: " if len(records) > 1 else ""
     text += "; ".join(wrong) + ": " + _advice(mending, units)
     alone = records[0].file if len(records) == 1 else None
-    return [Finding("warning", text, alone)]
+    return [Finding("warning", text, alone, about="unit")]
 
 
 def _advice(mending: Sequence[Slip], units: Sequence[Mapping[str, str | None]]) -> str:

@@ -192,8 +192,10 @@ def _check_varying(values: Mapping[str, Array], file: str) -> None:
     """Refuse a displacement or a force that is the same throughout."""
     for name in ("displacement", "force"):
         if name in values and not np.ptp(values[name]) > SMALLEST:
-            found = f"{values[name][0]:.6g} throughout"
-            raise InputError(name, expected="varying", found=found, where=file)
+            low, high = float(np.min(values[name])), float(np.max(values[name]))
+            found = f"{low:.6g} throughout" if low == high else f"{low:.6g} to {high:.6g}"
+            expected = "varying" if low == high else f"varying by more than {SMALLEST:g}"
+            raise InputError(name, expected=expected, found=found, where=file)
 
 
 def _value_findings(

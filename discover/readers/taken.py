@@ -11,10 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from discover.executor import Executor, Lost
 from discover.motion_fit import Found, found_in, stands_for_samples
@@ -26,7 +27,7 @@ from discover.readers.joined import joined
 from discover.readers.long_record import read_record_of_any_length
 from discover.readers.plausibility import sizes_of
 from discover.readers.source import Book, Source
-from discover.record_checks import apparent_of, digest_of, force_deviation, work_of
+from discover.record_checks import apparent_of, digest_of, force_deviation, returns, work_of
 from discover.record_kind import classify
 from discover.records import Finding, Record
 from models.checks import InputError
@@ -159,11 +160,17 @@ class _Found:
 
 def found_of(asked: Asked) -> list[_Found | InputError]:
     """Return the records that are asked for, observed, or what is wrong with them."""
-    with threadpool_limits(1):  # so that results are the same wherever they are made
+    with _libraries().limit(limits=1):  # so that results are the same wherever they are made
         return [
             each if isinstance(each, InputError) else _found(each, asked)
             for each in taken(asked)
         ]
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """Return what limits the threads of linear algebra: finding its libraries takes a while."""
+    return ThreadpoolController()
 
 
 def _found(each: Taken, asked: Asked) -> _Found:
@@ -172,6 +179,7 @@ def _found(each: Taken, asked: Asked) -> _Found:
     found_in(record)
     digest_of(record)
     force_deviation(record)
+    returns(record)
     work = work_of(record)
     if record.displacement is not None:
         sizes_of(record)

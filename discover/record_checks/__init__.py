@@ -1,7 +1,13 @@
 """Judging records before anything is fitted: kind, noise, signs, copies."""
 
 from discover.record_checks.apparent import Apparent, apparent
-from discover.record_checks.asked_once import apparent_of, digest_of, force_deviation, work_of
+from discover.record_checks.asked_once import (
+    apparent_of,
+    digest_of,
+    force_deviation,
+    returns,
+    work_of,
+)
 from discover.record_checks.check import (
     CampaignCheck,
     RecordCheck,
@@ -27,5 +33,6 @@ __all__ = [
     "digest_of",
     "force_deviation",
     "loop_work",
+    "returns",
     "work_of",
 ]

@@ -8,6 +8,7 @@ import numpy as np
 
 from discover.record_checks.apparent import Apparent, apparent
 from discover.record_checks.loop_work import LoopWork, loop_work
+from discover.record_checks.one_way import comes_back
 from discover.record_kind import classify
 from discover.records import Record
 
@@ -33,6 +34,11 @@ def digest_of(record: Record) -> str:
     return record.once(_digest)
 
 
+def returns(record: Record) -> bool:
+    """Return whether a record's motion comes back, or nothing tells it."""
+    return record.once(_returns)
+
+
 def force_deviation(record: Record) -> float:
     """Return the force's root mean square about its mean, N."""
     return record.once(_force_deviation)
@@ -47,6 +53,11 @@ def _work(record: Record) -> LoopWork | None:
 
 def _apparent(record: Record) -> Apparent | None:
     return apparent(record, classify(record))
+
+
+def _returns(record: Record) -> bool:
+    even = record.even
+    return even.displacement is None or comes_back(even.displacement)
 
 
 def _digest(record: Record) -> str:

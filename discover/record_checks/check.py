@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from discover.motion_fit import Observation
-from discover.record_checks.asked_once import apparent_of, digest_of, work_of
+from discover.record_checks.asked_once import apparent_of, digest_of, returns, work_of
 from discover.record_kind import RecordKind, classify
 from discover.records import Campaign, Finding, Record
 from discover.rows import compared_with
@@ -151,7 +151,29 @@ def data_errors(campaign: Campaign) -> tuple[Finding, ...]:
 
 
 def _of_campaign(campaign: Campaign) -> list[Finding]:
-    return [*_signs(campaign.records), *_copies(campaign.records), *_roles(campaign)]
+    return [
+        *_signs(campaign.records),
+        *_one_way(campaign),
+        *_copies(campaign.records),
+        *_roles(campaign),
+    ]
+
+
+def _one_way(campaign: Campaign) -> list[Finding]:
+    """Return findings on records whose motion never comes back: an error where there is no other.
+
+    Two of them at other speeds tell something, if little.
+    """
+    fitted = campaign.fitted
+    lone = len(fitted) == 1
+    text = (
+        "the motion goes one way, and its speed does not both rise and fall: any force can be a"
+        " law of the place as well as of the speed or of the time, and no model can be told from"
+        " another; measure a stroke from rest to rest at least, better several cycles"
+    )
+    return [
+        Finding("error" if lone else "warning", text, r.file) for r in fitted if not returns(r)
+    ]
 
 
 def _signs(records: tuple[Record, ...]) -> list[Finding]:

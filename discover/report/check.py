@@ -122,6 +122,11 @@ def next_step(document: Mapping[str, Any], *, campaign: str) -> str:
     study = f"`inerter discover {campaign}`"
     if not document["passed"]:
         return f"mend what is in error, then run {again} again."
+    if any(f.get("about") == "unit" for f in document["findings"]):
+        return (
+            f"see whether the unit in question is right; once it is, run {again} again. {study}"
+            " works as it is, with sizes as read."
+        )
     if not document["inseparable"]:
         return f"{study} finds which structure the records support."
     as_it_is = f"{study} works as it is, and leaves such pairs open."
@@ -185,7 +190,7 @@ def _plan_lines(document: Mapping[str, Any]) -> list[str]:
         if s["rank"] < s["columns"]
     ]
     lines += [f"Can't be told apart: {why}." for why in _reasons(document["inseparable"])]
-    if not document["inseparable"]:
+    if document["passed"] and not document["inseparable"]:
         lines.append("Plan: these tests can tell the four structures apart at their noise.")
     return lines
 

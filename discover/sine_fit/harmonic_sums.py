@@ -28,9 +28,9 @@ class Moments:
     """Times of samples; in equal steps, where they are."""
 
     time: Array
-    """(N,) s, rising."""
+    """(N,) s; rising where they are in equal steps."""
     step: float | None
-    """s, of equal steps; None where times do not lie on any."""
+    """s, of equal steps; None where times do not lie on any, or do not rise."""
     places: Indices | None
     """(N,) steps since the first sample; None where none is missing."""
 
@@ -60,10 +60,15 @@ def moments(time: Array) -> Moments:
     [0, 1, 2, 4]
     >>> moments(np.array([0.1, 0.2, 0.33])).step is None
     True
+
+    Mean times of cells of a cycle lie on a grid too, but do not rise:
+
+    >>> moments(np.array([0.2, 0.1, 0.3])).step is None
+    True
     """
     size = time.size
     steps = np.diff(time)
-    if size < 2:
+    if size < 2 or not float(steps.min()) > 0.0:
         return Moments(time, None, None)
     usual = float(np.median(steps[:_BLOCK]))
     span = float(time[-1] - time[0])

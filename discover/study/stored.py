@@ -104,7 +104,9 @@ def _study(d: Mapping[str, Any], model: SegmentedModel) -> Study:
         held_out_relative_error_percent=d.get("held_out_relative_error_percent"),
         held_out_with_own_values_percent=d.get("held_out_with_own_values_percent"),
         identifiable=d["identifiable"],
-        findings=tuple(Finding(f["level"], f["text"], f.get("record")) for f in d["findings"]),
+        findings=tuple(
+            Finding(f["level"], f["text"], f.get("record"), f.get("about")) for f in d["findings"]
+        ),
         bands=tuple(_band(b) for b in d["bands"]),
         nuisance=tuple(
             Nuisance(n["id"], n["value"], _pair(n["interval"]), n["unit"]) for n in d["nuisance"]

@@ -330,6 +330,8 @@ def next_line(document: Mapping[str, Any]) -> str:
         if document.get("identifiable", True):
             left = " What is unexplained is in none of them." if _so_far(document) else ""
             return f"Next test: none; no pair of structures is left to tell apart.{left}"
+        if any(f.get("about") == "unit" for f in document.get("findings", ())):
+            return "Next test: none proposed while a unit is in doubt."
         return "Next test: none proposed."
     amplitude = significant(1e3 * test["amplitude_m"], 3)
     purpose = next_purpose(test)

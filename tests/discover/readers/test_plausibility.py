@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from discover.cli import main
 from discover.readers import read_campaign
 
 DEVICE = '[device]\npreset = "device-12"\n'  # 370 kg
@@ -131,3 +132,29 @@ def test_a_device_of_any_size_without_inertia_is_never_accused(
         toml += f'[[records]]\nfile = "{index}.csv"\n'
     (tmp_path / "campaign.toml").write_text(toml)
     assert _told(tmp_path) == []
+
+
+def test_no_test_is_proposed_in_a_unit_that_is_in_doubt(
+    tmp_path: Path, undrawn: None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of one frequency, so that structures are left open; a displacement in mm without a unit."""
+    w = 2 * np.pi * 2.0
+    x, v = 10.0 * np.sin(w * TIME), 10.0 * w * np.cos(w * TIME)
+    force = -0.2 * w**2 * x + 9.0 * v + np.random.default_rng(0).standard_normal(TIME.size)
+    table = np.column_stack([TIME, x, force])
+    for name, unit in (("doubted", ""), ("stated", " [mm]")):
+        header = f"time [s],displacement{unit},force [N]"
+        folder = tmp_path / name
+        folder.mkdir()
+        np.savetxt(folder / "a.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+        (folder / "campaign.toml").write_text('[[records]]\nfile = "a.csv"\n')
+    said = {}
+    for name in ("doubted", "stated"):
+        for verb in ("check", "discover"):
+            assert main([verb, str(tmp_path / name), "-o", str(tmp_path / f"{name}-{verb}")]) == 0
+            said[name, verb] = capsys.readouterr().out
+    assert "is displacement in mm where m was read?" in said["doubted", "check"]
+    assert "Next: see whether the unit in question is right" in said["doubted", "check"]
+    assert "Next test: none proposed while a unit is in doubt." in said["doubted", "discover"]
+    assert "Next: add a test at 1 Hz and 10 mm" in said["stated", "check"]
+    assert "Next test: none" not in said["stated", "discover"]

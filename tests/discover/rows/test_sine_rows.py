@@ -145,3 +145,16 @@ def test_a_coarser_cycle_weighs_the_same_model():
         fine, coarse = force_rows(rows, model), force_rows(rows.coarse, model)
         assert np.linalg.norm(fine - coarse) < 0.01 * np.linalg.norm(fine), name
     assert 4 * rows.coarse.cycle.displacement.size == rows.cycle.displacement.size
+
+@pytest.mark.parametrize("frequency", [1.0, 2.0, 2.5, 4.0])
+def test_cells_of_a_test_whose_cycle_is_whole_samples_have_the_motion_of_their_times(frequency):
+    """Mean times of cells then lie on the sampling's grid, in no order."""
+    time = np.arange(6000) / 500.0
+    omega = 2.0 * np.pi * frequency
+    x = np.array([float(f"{8e-3 * s:.9g}") for s in np.sin(omega * time)])  # as text holds it
+    force = -370.0 * omega**2 * x + 4000.0 * 8e-3 * omega * np.cos(omega * time)
+    noise = 3.0 * np.random.default_rng(0).standard_normal(time.size)
+    rows = record_rows(observe(Record("a.csv", time, force + noise, x)))
+    assert rows.motion.time.size < time.size
+    expected = 8e-3 * np.sin(omega * rows.motion.time)
+    np.testing.assert_allclose(rows.motion.displacement, expected, atol=1e-6)
