@@ -41,7 +41,7 @@ def working(device, answer):
 
 def test_few_records_that_no_law_holds_for_make_no_structure_sure():
     """By evidence one is: it is a little less wrong than the others."""
-    records = campaign(yielding, frequencies=(0.2, 2.0), amplitudes=(0.005, 0.02), noise=0.002)
+    records = campaign(yielding, frequencies=(0.3, 1.0), amplitudes=(0.01, 0.02), noise=0.002)
     device = replace(prepare(records, StudyOptions()).device, extras=())
     before, after = searched_with(device, (), None), told(found(device))
     assert not before.banded.quiet
