@@ -211,7 +211,7 @@ def reversals_of(
         few, columns = [one, *few], np.concatenate([plain[:, None], columns], axis=1)
     others = [i for i, n in enumerate(predicting.local.numbers) if n.term != at[0]]
     slopes = predicting.local.slopes
-    sets = [_nearest(space, columns, total, few, slopes[:, some]) for some in (others, [])]
+    sets = [_few(columns, total, few, slopes[:, some]) for some in (others, [])]
     without = left + main.coefficient * plain
     sizes = assessed.place.sizes(space.own_unit)
     power = 1.0 if assessed.quiet else own_share(predicting)
@@ -222,42 +222,6 @@ def reversals_of(
         if found.sliding > 0.0:
             found = replace(found, differs=sizes.friction / found.sliding)
         result.append(found)
-    return result
-
-
-def _nearest(
-    space: Space, whole: Array, total: Array, curves: Sequence[FittedTerm], others: Array
-) -> tuple[FittedTerm, ...]:
-    """Return few curves that come nearest to the total; what falls away reverses as friction does.
-
-    Among friction's curves (U, K, R) it reverses at once, as together they make any reversal.
-    """
-    chosen = _few(whole, total, curves, others)
-    falling = _falling(curves, chosen)
-    if not falling:
-        return chosen
-    columns = space.sheet.stack([space.columns_of(r, falling) for r in space.sheet.rows])
-    wide = np.concatenate([whole, columns], axis=1)
-    return _few(wide, total, [*curves, *falling], others)
-
-
-def _falling(
-    curves: Sequence[FittedTerm], chosen: Sequence[FittedTerm]
-) -> list[FittedTerm]:
-    """Return curves of terms that need friction, as they fall away from a chosen reversal.
-
-    None where none of them is chosen.
-    """
-    own = [t for t in chosen if t.id == curves[0].id]
-    result = list[FittedTerm]()
-    if len(own) == len(chosen):
-        return result
-    for fall in (t for t in curves if t.id != curves[0].id):
-        names = {p.name for p in fall.term.parameters if p.unit}
-        for turn in own:
-            shape = {n: v for n, v in turn.shape.items() if v > 0.0 and n in names}
-            if shape:
-                result.append(replace(fall, shape={**fall.shape, **shape}))
     return result
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from models.checks import Array
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state
-from models.terms.scales import Scales, doubling
+from models.terms.scales import Scales
 from models.terms.term import Parameter, Shape, Start, Term
 
 
@@ -48,10 +48,8 @@ def starts(scales: Scales) -> list[Start]:
 
 
 def curves(scales: Scales) -> list[Shape]:
-    """Return falls from the speeds over which friction may reverse to half the greatest speed."""
-    return [
-        {"stribeck_velocity": s} for s in doubling(scales.reversals()[0], 0.5 * scales.speed)
-    ]
+    """Return falls over the speeds over which friction may reverse, beside one at once."""
+    return [{"stribeck_velocity": s} for s in scales.reversals()]
 
 
 _FALLS = ("", "falling as exp(−|v|/v_s)", "falling as 1/(1 + (v/v_s)²)")

@@ -83,18 +83,6 @@ def test_few_curves_make_the_whole_of_friction(found):
         assert all(t.coefficient > 0.0 for t in reversal.terms)
 
 
-def test_what_falls_away_reverses_as_friction_does():
-    def friction(t, x, v, a):
-        return np.tanh(v / 1e-3) * (40.0 + 30.0 * np.exp(-np.abs(v) / 0.012))
-
-    assessed = assessed_of(friction)
-    found, _ = with_few_curves(assessed.assessor, assessed, assessed.predicting)
-    total = sum(t.coefficient * assessed.assessor.evaluator.unit(t) for t in found.terms)
-    expected = of_formula(assessed.space.sheet.rows, friction)
-    assert found.sliding == pytest.approx(40.0, rel=0.06)
-    assert np.linalg.norm(total - expected) < 0.02 * np.linalg.norm(expected)
-
-
 def test_what_slides_is_its_own_curves_alone(found):
     assert found["speed"][1].sliding == pytest.approx(40.0, rel=0.03)
     falling = found["falling"][1]
@@ -177,29 +165,23 @@ def test_where_it_can_t_be_told_it_is_not_sure():
     assert all(0.5 <= reversal.sure < 0.9 for reversal in found)
 
 
-@pytest.fixture(scope="module")
-def differing():
-    """Return friction whose deviation between records is a quarter of its mean."""
+def test_friction_that_differs_from_record_to_record_has_a_size(found):
     sizes = iter((25.0, 55.0, 30.0, 50.0, 45.0, 35.0))
+
+    def differing(t, x, v, a):
+        return next(sizes) * np.tanh(v / SPEED)
 
     plan = (*APART, (4.0, 0.004), (1.0, 0.015))
 
     def law(t, x, v, a):
-        return 120.0 * a + 800.0 * v + next(sizes) * np.tanh(v / SPEED)
+        return 120.0 * a + 800.0 * v + differing(t, x, v, a)
 
     assessor = assessor_of(rows_of(law, plan, cycles=3))
     assessed = assessor.assess(RUBBING, assessor.space.start)
-    return reversals_of(assessor, assessed, assessed.predicting)[0]
-
-
-def test_friction_that_differs_from_record_to_record_has_a_size(found, differing):
-    assert differing.differs > 0.1
+    reversal = reversals_of(assessor, assessed, assessed.predicting)[0]
+    # The sizes' own deviation is a quarter of their mean; sizes are powers of two.
+    assert 0.1 < reversal.differs < 0.6
     assert found["speed"][1].differs < 0.05
-
-
-@pytest.mark.xfail(strict=True, reason="the size is that of each curve: up to four times as much")
-def test_how_much_friction_differs_is_its_deviation_between_records(differing):
-    assert differing.differs < 0.6
 
 
 def with_unknown(t, x, v, a):
