@@ -26,7 +26,7 @@ from discover.words import (
     significant,
     zero_possible,
 )
-from models.cores import FRICTION, OTHER, core_of
+from models.cores import FRICTION, OTHER
 from models.terms import TERMS
 from models.terms.between_tests import ONLY
 
@@ -170,13 +170,11 @@ def values_line(document: Mapping[str, Any]) -> str:
     texts = []
     for number, band in enumerate(document["bands"], start=1):
         beside = {e["id"] for e in band.get("extras", ())}
-        told = [t for t in band["terms"] if t["id"] not in beside and not _rubs(t)]
-        own = [_value(t) for t in told]
+        own = [_value(t) for t in band["terms"] if t["id"] not in beside and not _rubs(t)]
         place = [f"band {number}"] if len(document["bands"]) > 1 else []
         sure = band.get("probability")
         if sure is not None and sure < SURE:
-            # The likeliest single model, which need not be of the likeliest structure.
-            place.append(f"as {core_of([t['id'] for t in told])}")
+            place.append(f"as {band['structure']}")
         if own:
             texts.append(": ".join(filter(None, (", ".join(place), listed(own)))))
     return f"Values: {'; '.join(texts)}." if texts else ""

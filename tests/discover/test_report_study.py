@@ -291,21 +291,6 @@ def test_terms_that_were_asked_for_are_values_and_what_stands_beside_is_told_onc
     assert "stiffness" not in line
 
 
-def test_values_are_named_after_the_model_whose_they_are():
-    document = sample_document()
-    band = document["bands"][0]
-    band |= {
-        "structure": "IOIM-laminar", "probability": 0.56, "extras": [],
-        "equivalents": [{"structure": "IOIM-laminar", "probability": 0.56},
-                        {"structure": "IOIM-turbulent", "probability": 0.44}],
-        "terms": [{"id": "fractional-derivative", "coefficient": 1260.0, "unit": "N s/m",
-                   "order": 1.09, "interval": [925.0, 1530.0]}],
-    }  # fmt: skip
-    document["bands"] = [band]
-    (line,) = (one for one in verdict_lines(document) if one.startswith("Values"))
-    assert line.startswith("Values: as FOIM: fractional derivative")
-
-
 @pytest.mark.parametrize("verdict", ["consistent", "contradicted", "undetermined", "no-boundary"])
 def test_dean_line_leads_with_the_verdict(verdict):
     document = sample_document()
