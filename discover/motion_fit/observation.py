@@ -23,7 +23,7 @@ from models.motion import Motion, harmonic_motion
 
 Lines = NDArray[np.complex128]
 _FINE = 8192  # points of a cycle in which a joint's impacts are simulated
-_OUTSIDE = 0.01  # of the velocity's square, that is below a record's frequencies, or above
+_OUTSIDE = 0.01  # of a motion's square, that is below a record's frequencies, or above
 _MOVES = 1e-9  # of the fundamental, below which a harmonic is round-off
 
 
@@ -185,18 +185,21 @@ class Observation:
     def span(self) -> tuple[float, float]:
         """Hz: the frequency of a sine test, twice; else between which the motion is.
 
-        Below and above them is one percent each of the velocity's square.
+        Below is one percent of the displacement's square, above one of the velocity's: what
+        a test moves slowly is seen in its displacement, what it moves fast in its velocity.
         """
         if self.kind == "sine":
             return self.frequency, self.frequency
-        omega = np.concatenate([w.omega for w in self.windows])
-        moving = np.concatenate(
-            [w.share * np.abs(w.project(self.motion.velocity)) ** 2 for w in self.windows]
-        )
-        order = np.argsort(omega)
-        below = np.cumsum(moving[order]) / max(float(moving.sum()), 1e-300)
-        low, high = omega[order][np.searchsorted(below, [_OUTSIDE, 1.0 - _OUTSIDE])]
-        return float(low) / (2.0 * np.pi), float(high) / (2.0 * np.pi)
+        time = self.motion.time
+        frequency = np.fft.rfftfreq(time.size, time[1] - time[0])[1:]
+        taper = np.hanning(time.size + 2)[1:-1]
+        ends = []
+        for moved, part in (
+            (self.motion.displacement, _OUTSIDE), (self.motion.velocity, 1.0 - _OUTSIDE)
+        ):
+            below = np.cumsum(np.abs(np.fft.rfft(taper * (moved - moved.mean()))[1:]) ** 2)
+            ends.append(float(frequency[np.searchsorted(below, part * below[-1])]))
+        return ends[0], ends[1]
 
     @property
     def amplitude(self) -> float:
