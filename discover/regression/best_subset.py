@@ -82,13 +82,16 @@ def _insert(  # pragma: no cover - compiled
     best: Array, subsets: NDArray[np.int64], value: float, members: NDArray[np.int64]
 ) -> None:
     """Put a subset into the kept ones of its size, best first; the last of them goes."""
+    # Number by number: what numba makes of rows takes ten times as long to compile.
     place = best.size - 1
     while place > 0 and best[place - 1] > value:
         best[place] = best[place - 1]
-        subsets[place] = subsets[place - 1]
+        for n in range(members.size):
+            subsets[place, n] = subsets[place - 1, n]
         place -= 1
     best[place] = value
-    subsets[place, : members.size] = members
+    for n in range(members.size):
+        subsets[place, n] = members[n]
 
 
 @compiled(cache=True, nogil=True, fastmath=_SUMS_IN_ANY_ORDER)
@@ -123,12 +126,20 @@ def _search(  # pragma: no cover - compiled
     best = np.full((most + 1, keep), np.inf)
     subsets = np.zeros((most + 1, keep, most), np.int64)
 
-    left[0] = columns
-    residual[0] = target
-    misfit[0] = np.sum(target * target)
+    squares = 0.0
+    for n in range(length):
+        residual[0, n] = target[n]
+        squares += target[n] * target[n]
+    misfit[0] = squares
     for i in range(count):
-        power[0, i] = np.sum(columns[i] * columns[i])
-        slope[0, i] = np.sum(columns[i] * target)
+        squares, product = 0.0, 0.0
+        for n in range(length):
+            value = columns[i, n]
+            left[0, i, n] = value
+            squares += value * value
+            product += value * target[n]
+        power[0, i] = squares
+        slope[0, i] = product
 
     depth = 0
     while depth >= 0:

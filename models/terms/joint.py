@@ -133,7 +133,9 @@ def _step(
     size = x.size
     result = np.empty(size)
     position, speed, slipped = x[start] - bent, v[start], 0.0
-    pace_limit = np.max(np.abs(v))
+    pace_limit = 0.0
+    for i in range(size):
+        pace_limit = max(pace_limit, abs(v[i]))
     h = step / inner
     brake = h * dry / mass
     rate, turned_for = 0.0, -1.0  # the valve's time; -1 where it is closed
