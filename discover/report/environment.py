@@ -62,6 +62,8 @@ def prose(text: str) -> Markup:
     'D<sup>0.6</sup> x and N s<sup>2</sup>/m<sup>2</sup>'
     >>> str(prose("k from -1.5 to -0.9, by `--column force=-1`"))
     'k from −1.5 to −0.9, by <code>--column force=-1</code>'
+    >>> str(prose("FOIM > 99 %")).replace(words.THIN_SPACE, "_").replace("\u00a0", "_")
+    'FOIM &gt;_99_%'
     """
     plain = str(escape(text)).replace(" %", f"{words.THIN_SPACE}%")
     # Every other part stands between backticks.
@@ -71,9 +73,10 @@ def prose(text: str) -> Markup:
 
 
 def _typeset(text: str) -> str:
-    """Return escaped text with minus signs before numbers and raised powers."""
+    """Return escaped text with minus signs and raised powers; "> 99" stays on one line."""
     signed = re.sub(r"(?<![\w.)^-])-(?=\d)", "−", text)
-    return re.sub(r"\^(?:\(([^()]+)\)|(-?\d+(?:\.\d+)?|\w)\b)", r"<sup>\1\2</sup>", signed)
+    raised = re.sub(r"\^(?:\(([^()]+)\)|(-?\d+(?:\.\d+)?|\w)\b)", r"<sup>\1\2</sup>", signed)
+    return re.sub(r"(&[lg]t;) (?=\d)", "\\1\u00a0", raised)
 
 
 def grouped(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
