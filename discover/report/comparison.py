@@ -36,8 +36,8 @@ def comparison_lines(document: Mapping[str, Any]) -> list[str]:
     same = "the same everywhere" if document["same_structures"] else "not the same"
     lines.append(f"Structures: {same}.")
     quantities = document["quantities"]
-    told = any(q["differs"] is not None for q in quantities)
-    for differs, name in ((True, "Differ"), (False, "Agree")) if told else ():
+    comparable = any(q["differs"] is not None for q in quantities)
+    for differs, name in ((True, "Differ"), (False, "Agree")) if comparable else ():
         some = [_value_line(q) for q in quantities if q["differs"] is differs]
         more = [f"{len(some) - _MOST} more"] if len(some) > _MOST else []
         lines.append(f"{name}: " + ("; ".join([*some[:_MOST], *more]) or "nothing") + ".")

@@ -80,19 +80,25 @@ def _typeset(text: str) -> str:
 
 
 def grouped(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return findings with those that say the same of several records made one.
+    """Return findings, errors first, with those that say the same of several records made one.
 
     Examples
     --------
     >>> said = {"level": "note", "text": "has gaps"}
     >>> grouped([{**said, "record": "a.csv"}, {**said, "record": "b.csv"}])
     [{'level': 'note', 'text': 'has gaps', 'records': ['a.csv', 'b.csv']}]
+    >>> [f["level"] for f in grouped([said, {"level": "error", "text": "has no force"}])]
+    ['error', 'note']
     """
     found: dict[tuple[str, str], list[str]] = {}
     for f in findings:
         records = found.setdefault((str(f["level"]), str(f["text"])), [])
         records += [str(f["record"])] if f.get("record") else []
-    return [{"level": k[0], "text": k[1], "records": records} for k, records in found.items()]
+    kept = [{"level": k[0], "text": k[1], "records": records} for k, records in found.items()]
+    return sorted(kept, key=lambda f: _LEVELS.index(f["level"]))
+
+
+_LEVELS = ("error", "warning", "note")
 
 
 # Kept: the templates that ship with the package do not change.

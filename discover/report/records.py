@@ -145,7 +145,8 @@ def _stiffness_caption(records: Sequence[ShownRecord], *, sines: bool, wide: boo
         parts.append("Sine tests, each at its own frequency, one colour for each amplitude: rings "
                      f"are measured, crosses and dashes are {_first_model(records)}")  # fmt: skip
     if wide:
-        parts.append("Of other records by Welch's spectra where the motion excites them, with the "
-                     "coherence of displacement and measured force: 1 where the one alone makes "
-                     "the other")  # fmt: skip
+        parts.append(f"{'Other records' if sines else 'Records'} by Welch's method, at the "
+                     f"frequencies that the motion holds: measured whole, {_first_model(records)} "
+                     "dashed. The coherence of displacement and measured force is 1 where the one "
+                     "alone makes the other")  # fmt: skip
     return ". ".join(parts) + "."

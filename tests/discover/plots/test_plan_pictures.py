@@ -47,8 +47,7 @@ def test_map_leaves_out_numbers_that_would_lie_on_each_other():
 
 
 def test_tests_of_which_the_same_noise_is_written_have_one_colour():
-    noises = (1.98, 2.02)
-    plan = tuple(planned(f, 0.005, noise_percent=n) for f, n in zip((0.5, 5.0), noises, strict=True))
+    plan = (planned(0.5, 0.005, noise_percent=1.98), planned(5.0, 0.005, noise_percent=2.02))
     labels = words(plan_map(PlanFigureData(plan)))
     assert labels.count("2 %") == 2
     assert sum(label.startswith("noise") for label in labels) == 1
