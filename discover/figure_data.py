@@ -50,6 +50,11 @@ class ShownRecord:
         """100 ||e||/||F|| of each prediction."""
         return ()
 
+    @property
+    def part(self) -> str:
+        """What the record was for: "fitted" or "held out"."""
+        return "held out" if self.held_out else "fitted"
+
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class RecordCurves(ShownRecord):
@@ -99,6 +104,11 @@ class SimulatedRecord(ShownRecord):
     def errors_percent(self) -> tuple[float | None, ...]:
         """Of each model."""
         return self.misses
+
+    @property
+    def part(self) -> str:
+        """Models come as they are: "held out" or "other", none was fitted here."""
+        return "held out" if self.held_out else "other"
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ _NAMES = {
     "inertia": "inertance",
     "quadratic-damping": "quadratic damping, v|v|",
     "power-law-damping": "power-law damping, |v|\u2060ᵖ",
-    "coulomb-friction": "Coulomb friction, sign v",
+    "coulomb-friction": "Coulomb friction, sign\u00a0v",
     "stribeck-friction": "Stribeck friction",
     "force-offset": "force offset",
     "time-delay": "delay between channels",

@@ -23,8 +23,9 @@ def side_by_side(
     Parameters
     ----------
     quantities : sequence of mapping
-        As in ``comparison.json``; left out are those that only one answer has, and those that may
-        be nothing in one: against these the others' intervals would be too short to see.
+        As in ``comparison.json``; left out are those that only one answer has, those that may be
+        nothing in one (against these the others' intervals would be too short to see), and those
+        that are the same number without an interval in all.
     names : sequence of str
         Of the answers.
     labels : sequence of str
@@ -83,5 +84,7 @@ def _comparable(values: Sequence[Mapping[str, Any] | None]) -> bool:
     if any(zero_possible(v["interval"]) for v in there):
         return False
     sizes = [abs(v["value"]) for v in there]
+    if all(v["interval"] is None for v in there) and max(sizes) == min(sizes):
+        return False
     mean = abs(float(np.mean([v["value"] for v in there])))
     return len({v["unit"] for v in there}) == 1 and mean > 0.2 * max(sizes)

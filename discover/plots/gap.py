@@ -96,7 +96,8 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
     rounds = document["rounds"]
     if not rounds:
         return None
-    names = ["baseline"]
+    # Rounds start from the baseline's own coefficients refitted, not from what was given.
+    names = ["baseline" if document["baseline"].get("fixed") else "baseline,\nrefitted"]
     for r in rounds:
         instead = " instead" if r.get("dropped") else ""
         names.append("\n".join(wrap(f"+ {short_name(r['effect'])}{instead}", _NARROW)))
@@ -104,7 +105,7 @@ def gap_by_round(document: Mapping[str, Any]) -> str | None:
         figure = new_figure(620, 290 if len(names) <= _LEVEL else 350)
         axes = figure.add_subplot()
         axes.set_yscale("log")
-        for key, colour, label in (("gap", ACCENT, "fitted"), ("held_out", MODEL, "not fitted")):
+        for key, colour, label in (("gap", ACCENT, "fitted"), ("held_out", MODEL, "held out")):
             values = [rounds[0][f"{key}_before_percent"]]
             values += [r[f"{key}_after_percent"] for r in rounds]
             if all(v is not None for v in values):

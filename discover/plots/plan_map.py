@@ -67,11 +67,15 @@ def plan_map(data: PlanFigureData) -> str | None:
 
 
 def _noise_class(test: PlannedTest) -> tuple[str, str]:
-    """Return the colour and the name of the class that a test's noise lies in."""
+    """Return the colour and the name of the class that a test's noise, as written, lies in."""
     if test.noise_percent is None:
         return _UNKNOWN
-    noise = test.noise_percent
+    noise = float(_written(test.noise_percent))
     return next((colour, name) for limit, colour, name in _CLASSES if noise < limit)
+
+
+def _written(noise_percent: float) -> str:
+    return f"{noise_percent:.2g}"
 
 
 def _points(axes: Axes, tests: Sequence[PlannedTest]) -> None:
@@ -129,7 +133,7 @@ def _numbers(axes: Axes, tests: Sequence[PlannedTest]) -> None:
         if test.kind != "sine" or test.noise_percent is None or on_another:
             continue
         number = axes.annotate(
-            f"{test.noise_percent:.2g} %",
+            f"{_written(test.noise_percent)} %",
             (test.frequency, 1e3 * test.amplitude),
             xytext=(0, -9),
             textcoords="offset points",

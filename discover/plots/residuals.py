@@ -56,7 +56,7 @@ def residual(record: ShownRecord, *, name: str) -> str | None:
             look = prediction_look(label, number)
             if number == 0:  # the model that matters, whole
                 look = {"color": look["color"], "linewidth": 1.3}
-            left = "left by model" if label == "model" else f"left {label}"
+            left = f"left {label}" if label in ("before", "after") else f"left by {label}"
             lines = spectrum.plot(found.frequency, found.left, label=left, **look)
             lines += cycle.plot(360.0 * found.phase, force * found.over_phase, **look)
             lines += white.plot(1e3 * found.lag, found.correlation, **look)
@@ -75,7 +75,7 @@ def residual(record: ShownRecord, *, name: str) -> str | None:
         if first.lag.size:
             limit = first.correlation_limit
             band = white.axhspan(-limit, limit, color=MUTED, alpha=0.28, linewidth=0.0)
-            white.legend([band], ["95 % of white noise"], loc="lower right", handlelength=1.2)
+            white.legend([band], ["95 % of white noise"], loc="best", handlelength=1.2)
         white.set(xlabel="Lag (ms)", ylabel="Correlation", ylim=(-1.05, 1.05))
         white.locator_params(axis="x", nbins=5)
         handles, labels = spectrum.get_legend_handles_labels()
@@ -104,11 +104,11 @@ def over_tests(records: Sequence[ShownRecord], *, name: str) -> str | None:
             some = [f for f in found if f[1].held_out is held_out]
             if not some:
                 continue
+            label = some[0][1].part
             look = {
                 "linestyle": "none", "marker": "o", "markersize": 6.0,
                 "markerfacecolor": "white" if held_out else MODEL, "markeredgecolor": MODEL,
             }  # fmt: skip
-            label = "held out" if held_out else "fitted"
             numbers = [i for i, _, _ in some]
             ratio = [np.nan if x.error_over_noise is None else x.error_over_noise
                      for _, _, x in some]  # fmt: skip

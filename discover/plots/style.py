@@ -29,11 +29,13 @@ BEFORE = "#8a94a0"
 
 _LOOKS = (
     {"color": MODEL, "linewidth": 1.5, "dashes": (4, 2)},
-    {"color": ACCENT, "linewidth": 1.5, "dashes": (1.5, 1.5)},
     {"color": "#009e73", "linewidth": 1.5, "dashes": (6, 2, 1, 2)},
     {"color": "#cc79a7", "linewidth": 1.5, "dashes": (3, 1)},
+    {"color": ACCENT, "linewidth": 1.5, "dashes": (1.5, 1.5)},
 )
-"""Of the models beside a measured curve; colours by Okabe and Ito, each with its own dashes."""
+"""Of the models beside a measured curve; colours by Okabe and Ito, each with its own dashes.
+
+Blue, which the noise has, comes last."""
 
 MODEL_OVER_MANY: dict[str, Any] = {"color": MODEL, "linewidth": 1.0, "dashes": (4, 2)}
 """Of the model where measured curves have many colours."""

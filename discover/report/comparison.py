@@ -36,7 +36,8 @@ def comparison_lines(document: Mapping[str, Any]) -> list[str]:
     same = "the same everywhere" if document["same_structures"] else "not the same"
     lines.append(f"Structures: {same}.")
     quantities = document["quantities"]
-    for differs, name in ((True, "Differ"), (False, "Agree")):
+    comparable = any(q["differs"] is not None for q in quantities)
+    for differs, name in ((True, "Differ"), (False, "Agree")) if comparable else ():
         some = [_value_line(q) for q in quantities if q["differs"] is differs]
         more = [f"{len(some) - _MOST} more"] if len(some) > _MOST else []
         lines.append(f"{name}: " + ("; ".join([*some[:_MOST], *more]) or "nothing") + ".")
@@ -45,7 +46,7 @@ def comparison_lines(document: Mapping[str, Any]) -> list[str]:
         if q["differs"] is None:
             alone = sum(v is not None for v in q["values"]) < 2
             unknown.setdefault((alone, q["why"]), []).append(quantity_name(q))
-    for (alone, why), names in unknown.items():
+    for (alone, why), names in sorted(unknown.items(), key=lambda item: not item[0][0]):
         shown = list(dict.fromkeys(names))
         more = [f"{len(shown) - _MOST} more"] if len(shown) > _MOST else []
         told = "; ".join([*shown[:_MOST], *more])

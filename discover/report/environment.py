@@ -62,6 +62,8 @@ def prose(text: str) -> Markup:
     'D<sup>0.6</sup> x and N s<sup>2</sup>/m<sup>2</sup>'
     >>> str(prose("k from -1.5 to -0.9, by `--column force=-1`"))
     'k from −1.5 to −0.9, by <code>--column force=-1</code>'
+    >>> str(prose("FOIM > 99 %")).replace(words.THIN_SPACE, "_").replace("\u00a0", "_")
+    'FOIM &gt;_99_%'
     """
     plain = str(escape(text)).replace(" %", f"{words.THIN_SPACE}%")
     # Every other part stands between backticks.
@@ -71,25 +73,32 @@ def prose(text: str) -> Markup:
 
 
 def _typeset(text: str) -> str:
-    """Return escaped text with minus signs before numbers and raised powers."""
+    """Return escaped text with minus signs and raised powers; "> 99" stays on one line."""
     signed = re.sub(r"(?<![\w.)^-])-(?=\d)", "−", text)
-    return re.sub(r"\^(?:\(([^()]+)\)|(-?\d+(?:\.\d+)?|\w)\b)", r"<sup>\1\2</sup>", signed)
+    raised = re.sub(r"\^(?:\(([^()]+)\)|(-?\d+(?:\.\d+)?|\w)\b)", r"<sup>\1\2</sup>", signed)
+    return re.sub(r"(&[lg]t;) (?=\d)", "\\1\u00a0", raised)
 
 
 def grouped(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return findings with those that say the same of several records made one.
+    """Return findings, errors first, with those that say the same of several records made one.
 
     Examples
     --------
     >>> said = {"level": "note", "text": "has gaps"}
     >>> grouped([{**said, "record": "a.csv"}, {**said, "record": "b.csv"}])
     [{'level': 'note', 'text': 'has gaps', 'records': ['a.csv', 'b.csv']}]
+    >>> [f["level"] for f in grouped([said, {"level": "error", "text": "has no force"}])]
+    ['error', 'note']
     """
     found: dict[tuple[str, str], list[str]] = {}
     for f in findings:
         records = found.setdefault((str(f["level"]), str(f["text"])), [])
         records += [str(f["record"])] if f.get("record") else []
-    return [{"level": k[0], "text": k[1], "records": records} for k, records in found.items()]
+    kept = [{"level": k[0], "text": k[1], "records": records} for k, records in found.items()]
+    return sorted(kept, key=lambda f: _LEVELS.index(f["level"]))
+
+
+_LEVELS = ("error", "warning", "note")
 
 
 # Kept: the templates that ship with the package do not change.

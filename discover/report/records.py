@@ -74,6 +74,7 @@ def record_section(records: Sequence[ShownRecord], figures: Figures) -> dict[str
         "all_loops": picture(figures, "all-loops"),
         "loops_caption": _loops_caption(records),
         "over_tests": picture(figures, "over-tests"),
+        "over_tests_caption": _over_tests_caption(records),
         "wide": wide,
     }
 
@@ -124,15 +125,28 @@ def _left(record: ShownRecord) -> str:
     return ("" if label == "model" else f"{label}: ") + "; ".join(parts)
 
 
-def _stiffness_caption(records: Sequence[ShownRecord], *, sines: bool, wide: bool) -> str:
+def _first_model(records: Sequence[ShownRecord]) -> str:
+    """Return the model that pictures of many records show, in words."""
     first = next((r.predictions[0][0] for r in records if r.predictions), "model")
-    model = {"model": "the model", "after": "the mended model"}.get(first, first)
+    return {"model": "the model", "after": "the mended model"}.get(first, f"the model {first}")
+
+
+def _over_tests_caption(records: Sequence[ShownRecord]) -> str:
+    return (
+        f"Above: what {_first_model(records)} leaves of the force, over the noise; 1 where only "
+        "noise is left. Below: by how much the measured force is greater than the model's; a trend "
+        "from test to test is drift, for instance of temperature."
+    )
+
+
+def _stiffness_caption(records: Sequence[ShownRecord], *, sines: bool, wide: bool) -> str:
     parts = []
     if sines:
-        parts.append("Of sine tests at their own frequency, a colour an amplitude: rings measured, "
-                     f"crosses and dashes {model}")  # fmt: skip
+        parts.append("Sine tests, each at its own frequency, one colour for each amplitude: rings "
+                     f"are measured, crosses and dashes are {_first_model(records)}")  # fmt: skip
     if wide:
-        parts.append("Of other records by Welch's spectra where the motion excites them, with the "
-                     "coherence of displacement and measured force: 1 where the one alone makes "
-                     "the other")  # fmt: skip
+        parts.append(f"{'Other records' if sines else 'Records'} by Welch's method, at the "
+                     f"frequencies that the motion holds: measured whole, {_first_model(records)} "
+                     "dashed. The coherence of displacement and measured force is 1 where the one "
+                     "alone makes the other")  # fmt: skip
     return ". ".join(parts) + "."

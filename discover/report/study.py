@@ -133,6 +133,7 @@ def study_report(
         held_out=sum(r.held_out for r in data.records),
         coordinate=coordinate_name(document),
         all_terms=[t for band in document["bands"] for t in band["terms"]],
+        sines=any(r.frequency is not None for r in data.records),
         dean=any(r.dean_paper is not None for r in data.records),
         baselines=data.baselines,
         check={**check, **document["dean_check"]},

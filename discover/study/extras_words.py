@@ -60,7 +60,7 @@ def _extra(group: Sequence[Mapping[str, Any]]) -> str:
             sizes.append(", ".join(filter(None, (size, _shape(extra)))))
     possibly = "possibly " if all(zero_possible(e["interval"]) for e in group) else ""
     text = f"{possibly}{short_name(str(group[0]['id']))} {'; '.join(sizes)}"
-    text += f", {probability(group[0]['probability'])}"
+    text += f", {probability(group[0]['probability'])} sure"
     others = [
         f"{short_name(str(a['effect']))} ({probability(a['probability'])})"
         for a in group[0].get("alternatives", ())

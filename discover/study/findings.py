@@ -179,6 +179,6 @@ def _about_nuisance(nuisance: Nuisance) -> Finding:
         size += ", which is not told from zero"
     return Finding(
         "note",
-        f"{capitalize_first(short_name(nuisance.id))} may belong to a measuring channel:"
-        f" {term.summary}, {size}. The model holds it.",
+        f"{capitalize_first(short_name(nuisance.id))}, {size}, may belong to a measuring channel"
+        f" and not to the device. It is in the model, as {term.summary}.",
     )

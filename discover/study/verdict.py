@@ -14,7 +14,6 @@ from discover.words import (
     band_range,
     coordinate_name,
     coordinate_value,
-    counted,
     interval,
     left_over,
     listed,
@@ -52,7 +51,9 @@ def headline(document: Mapping[str, Any]) -> str:
     besides = _effects_beside(bands[0])
     if len(bands) == 1:
         count = len(bands[0]["records"])
-        where = _ALL.get(count, f"all {counted(count, 'record')}")
+        fitted = document.get("held_out_relative_error_percent") is not None
+        noun = "fitted record" if fitted else "record"  # there are others, held out
+        where = f"{_ALL.get(count, f'all {count}')} {noun}{'s' * (count > 1)}"
         return f"{names[0]}{besides} in {where}{_dean_short(document)}{_so_far(document)}"
     coordinate = str(document["coordinate"])
     parts = [f"{n} {band_range(b, coordinate)}" for n, b in zip(names, bands, strict=True)]
@@ -86,7 +87,7 @@ def verdict_lines(document: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(line for line in lines if line)
 
 
-_ALL = {1: "the one record", 2: "both records"}  # that a band holds
+_ALL = {1: "the one", 2: "both"}  # records that a band holds
 _NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}  # of bands, in words
 
 
@@ -147,7 +148,7 @@ def _dean_short(document: Mapping[str, Any]) -> str:
     if verdict == "no-geometry":
         return ""
     if verdict == "no-boundary":
-        return "; no boundary, so nothing to hold the Dean criterion to"
+        return "; no boundary to test the Dean criterion on"
     said = {
         "consistent": "agrees with it", "contradicted": "contradicts it",
         "undetermined": "leaves it undetermined",
@@ -308,7 +309,7 @@ def dean_line(document: Mapping[str, Any]) -> str:
     verdict = str(check["verdict"])
     if verdict == "no-geometry":
         return ""
-    text = f"Dean check: {verdict}: {_WHY[verdict]}"
+    text = f"Dean check: {verdict.replace('-', ' ')}: {_WHY[verdict]}"
     boundary = check.get("boundary_dean")
     if boundary is not None:
         text += f"; boundary at De {significant(boundary, 3)}"

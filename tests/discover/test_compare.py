@@ -91,6 +91,15 @@ def test_the_axes_of_the_picture_keep_their_room_beside_names_of_bands():
     assert axes.get_position().width > 0.5
 
 
+def test_the_same_number_without_an_interval_makes_no_picture():
+    def drawn(*values):
+        entries = [{"value": v, "interval": None, "unit": "N"} for v in values]
+        return side_by_side([{"values": entries}], "ab", labels=["Coulomb friction"])
+
+    assert drawn(400.0, 400.0) is None
+    assert drawn(400.0, 380.0) is not None
+
+
 def test_what_may_be_nothing_is_in_the_table_and_not_in_the_picture():
     def coulomb(interval):
         return {"id": "coulomb-friction", "coefficient": 5.0, "unit": "N", "interval": interval}
@@ -155,6 +164,8 @@ def test_simulate_has_a_page_beside_its_tables(campaign, tmp_path, monkeypatch):
     assert main(["simulate", "ioim-laminar", "ioim-turbulent", str(campaign), "-o", "out"]) == 0
     page = (tmp_path / "out" / "report.html").read_text()
     assert "ioim-turbulent" in page
+    assert "dashes are the model ioim-laminar" in page
+    assert "left by ioim-laminar" in page
     assert (tmp_path / "out" / "figures" / "errors.svg").is_file()
     assert len(list((tmp_path / "out").glob("*.csv"))) == 2
 
@@ -187,6 +198,7 @@ def test_what_one_answer_alone_has_is_told_as_that_and_not_as_undecided(
     (laminar,) = [line for line in lines if line.startswith("Only in ioim-laminar: ")]
     assert "inertance" in laminar and "quadratic damping" in laminar
     assert not any("fractional" in line for line in lines if line.startswith("Can't be told"))
+    assert not any(line.startswith(("Differ", "Agree")) for line in lines)  # none can be compared
 
 
 def test_simulate_fits_terms_first_where_it_is_asked_to(campaign, tmp_path, monkeypatch, capsys):

@@ -184,6 +184,14 @@ def test_pictures_are_there_without_script_and_the_page_prints(opened):
     assert len(printed) > 20_000
 
 
+def test_what_is_folded_is_printed(opened):
+    page = opened("study", WIDE)
+    folded = page.locator("details table").first
+    assert not folded.is_visible()
+    page.emulate_media(media="print")
+    assert folded.is_visible()
+
+
 def test_a_page_is_small_enough_to_send(pages):
     for page in pages.glob("*.html"):
         assert page.stat().st_size < 3_000_000

@@ -124,6 +124,12 @@ def test_an_effect_that_is_no_curve_over_what_it_follows_is_drawn_as_points():
     assert scattered - joined >= sample_gap_data().shapes[0].x.size
 
 
+def test_rounds_start_from_the_baseline_refitted_unless_it_is_held():
+    document = sample_gap_document()
+    assert "refitted" in gap_by_round(document)
+    assert "refitted" not in gap_by_round({**document, "baseline": {"terms": [], "fixed": True}})
+
+
 def test_names_of_many_rounds_do_not_run_into_each_other():
     document = sample_gap_document()
     few = gap_by_round(document)

@@ -46,6 +46,13 @@ def test_map_leaves_out_numbers_that_would_lie_on_each_other():
     assert "1.4 %" not in labels
 
 
+def test_tests_of_which_the_same_noise_is_written_have_one_colour():
+    plan = (planned(0.5, 0.005, noise_percent=1.98), planned(5.0, 0.005, noise_percent=2.02))
+    labels = words(plan_map(PlanFigureData(plan)))
+    assert labels.count("2 %") == 2
+    assert sum(label.startswith("noise") for label in labels) == 1
+
+
 def test_map_tells_findings_held_out_tests_and_unknown_noise_apart():
     odd = (
         planned(1.0, 0.005, level="warning"),
