@@ -58,7 +58,11 @@ def observe(record: Record) -> Observation:
         kind = classify(even)
     if kind.kind == "periodic" and kind.period is not None:
         return observe_periodic(even, kind.usable, round(kind.period / even.step))
-    return observe_band(even, kind.usable, kind.kind, record.once(_band))
+    motion = None
+    if _band not in record.found:
+        found, motion = find_band(even, kind.usable)
+        record.learn({_band: found})
+    return observe_band(even, kind.usable, kind.kind, record.once(_band), motion)
 
 
 def _sine(record: Record) -> SineFound:
@@ -72,7 +76,7 @@ def _sine(record: Record) -> SineFound:
 
 
 def _band(record: Record) -> BandFound:
-    return find_band(record.even, classify(record.even).usable)
+    return find_band(record.even, classify(record.even).usable)[0]
 
 
 def found_in(record: Record) -> Found:

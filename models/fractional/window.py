@@ -31,5 +31,6 @@ def kaiser_window(samples: int, beta: float) -> Array:
     >>> kaiser_window(3, 6.0).round(3)
     array([0.015, 1.   , 0.015])
     """
-    s = np.linspace(-1.0, 1.0, samples)
-    return np.asarray(i0(beta * np.sqrt(1.0 - s**2)) / i0(beta))
+    s = np.linspace(-1.0, 1.0, samples)[: -(-samples // 2)]
+    rising = i0(beta * np.sqrt(1.0 - s**2)) / i0(beta)
+    return np.concatenate([rising, rising[: samples // 2][::-1]])
