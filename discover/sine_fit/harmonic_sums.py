@@ -19,6 +19,7 @@ from discover.sine_fit.design import ComplexArray
 from discover.sine_fit.moments import Moments
 from models.checks import Array
 
+_FEW = 16  # samples for each missing one, from which those are taken out of the sums of all
 _SHORTEST, _LONGEST = 64, 1024  # samples of a block: with their harmonics they stay in the cache
 
 
@@ -68,12 +69,17 @@ class Harmonics:
         >>> np.allclose(own, [[4.0, 0.0], [1.5, -0.5 - 0.5j]])
         True
         """
-        if self.at.step is None or self.at.places is not None:
+        missing = self.at.missing
+        if self.at.step is None or missing.size > self.at.time.size // _FEW:
             return self.sums(np.ones((1, self.at.time.size)), count, powers=powers)[:, 0]
         pairs = self._pairs(count, powers)
         each = np.tile(pairs.sum(axis=0), (self._starts.size, 1))
         each[-1] = pairs[: self.at.steps - (self._starts.size - 1) * self._length].sum(axis=0)
-        return self._joined(each, count, powers)
+        found = self._joined(each, count, powers)
+        if missing.size:
+            waves = _powers(self._wave(missing), count)
+            found -= np.stack([waves @ missing**m for m in range(powers)])
+        return found
 
     def series(self, phasors: ComplexArray) -> Array:
         """Return ``Re sum_k c_k exp(i k w t)`` at the samples for phasors (..., H + 1), (..., N).

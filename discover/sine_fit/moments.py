@@ -30,6 +30,15 @@ class Moments:
         """Number of equal steps, with those whose sample is missing."""
         return self.time.size if self.places is None else int(self.places[-1]) + 1
 
+    @property
+    def missing(self) -> Array:
+        """(M,) s, of equal steps whose sample is missing."""
+        if self.places is None or self.step is None:
+            return np.zeros(0)
+        gone = np.ones(self.steps, dtype=np.bool_)
+        gone[self.places] = False
+        return np.asarray(self.time[0] + self.step * np.flatnonzero(gone))
+
     def since(self, origin: float) -> Moments:
         """Return the same with times counted from another origin, s."""
         return Moments(self.time - origin, self.step, self.places)

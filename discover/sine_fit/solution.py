@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from discover.sine_fit.basis import Basis
 from discover.sine_fit.design import ComplexArray
 from discover.sine_fit.moments import Moments
 from models.checks import Array
+from models.fractional.lowest_lines import lowest_lines
+from models.fractional.window import hann_window
 
 _NEAREST = 24  # bins whose median is the noise beside a harmonic
+_BESIDE = 8  # bins beyond those, which a harmonic hides
+_FEWEST = 8  # bins clear of harmonics, from which a level can be told
 _NEGLIGIBLE = 1e-12  # of the fundamental: rounding, not a harmonic
 
 
@@ -130,21 +136,18 @@ class Solution:
     def _measure_noise(self) -> None:
         """Set the noise density (as a white variance) at each harmonic and overall."""
         n = self.z.size
-        freedom = max(n - self.size, 1)
-        self.total = float(self.residual @ self.residual) / freedom
-        duration = float(self.tau[-1] - self.tau[0])
-        window = np.hanning(n)
-        density = np.abs(np.fft.rfft(self.residual * window)) ** 2 / float(window @ window)
-        bins = np.arange(density.size) * (n - 1) / n  # in units of 1/duration
-        cycles = self.frequency * duration
-        nearest = np.clip(np.round(bins / cycles), 0, max(self.orders))
-        free = (np.abs(bins - nearest * cycles) > 2.0) & (bins < 0.5 * n - 1.0)
-        if int(free.sum()) < 8:
-            self.white = self.total
+        self.total = float(self.residual @ self.residual) / max(n - self.size, 1)
+        cycles, bins = self._cycles, n // 2 + 1
+        # Beyond the last harmonic all bins are free: so many are enough.
+        count = min(int(np.ceil(max(self.orders) * cycles)) + _NEAREST + _BESIDE, bins)
+        free = self._free(count)
+        self.few = int(free.sum()) < _FEWEST
+        if self.few:
             self.local = {k: self.total for k in (0, *self.orders)}
             return
-        positions, levels = bins[free], density[free]
-        self.white = float(np.median(levels) / np.log(2.0))
+        lowest = lowest_lines(n, count)
+        density = self._density(lowest.of) if lowest.block else self._whole[:count]
+        positions, levels = self._bins(count)[free], density[free]
         self.local = {}
         for k in (0, *self.orders):
             at = int(np.searchsorted(positions, k * cycles))
@@ -152,6 +155,36 @@ class Solution:
             distance = np.abs(positions[beside] - k * cycles)
             near = np.argsort(distance, kind="stable")[:_NEAREST]
             self.local[k] = float(np.median(levels[beside][near]) / np.log(2.0))
+
+    @property
+    def white(self) -> float:
+        """The noise's median density, as a white variance."""
+        if self.few:
+            return self.total
+        return float(np.median(self._whole[self._free(self._whole.size)]) / np.log(2.0))
+
+    @property
+    def _cycles(self) -> float:
+        return self.frequency * float(self.tau[-1] - self.tau[0])
+
+    def _bins(self, count: int) -> Array:
+        """Return the lowest frequencies, in units of 1/duration."""
+        return np.asarray(np.arange(count) * (self.z.size - 1) / self.z.size)
+
+    def _free(self, count: int) -> NDArray[np.bool_]:
+        """Return which of the lowest bins are clear of harmonics."""
+        bins, cycles = self._bins(count), self._cycles
+        nearest = np.clip(np.round(bins / cycles), 0, max(self.orders))
+        clear = np.abs(bins - nearest * cycles) > 2.0
+        return np.asarray(clear & (bins < 0.5 * self.z.size - 1.0))
+
+    @cached_property
+    def _whole(self) -> Array:
+        return self._density(np.fft.rfft)
+
+    def _density(self, spectrum: Callable[[Array], ComplexArray]) -> Array:
+        window = hann_window(self.z.size)
+        return np.asarray(np.abs(spectrum(self.residual * window)) ** 2 / float(window @ window))
 
     def significant(self) -> tuple[tuple[int, ...], bool]:
         """Return the harmonics that stand out of the noise, and whether the trend does."""
