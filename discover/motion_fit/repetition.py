@@ -239,7 +239,8 @@ def _response(same: SamePhase, time: Array, counts: Array, width: float, size: i
         turns = 2j * np.pi * width * (time[same.places[part]] - time[i])
         fine = _powers(np.exp(turns), block)
         coarse = same.weights[part, None] * _powers(np.exp(block * turns), block)
-        total += counts[i] * np.abs(1.0 - (coarse.T @ fine).ravel()) ** 2
+        compared = (coarse.T @ fine).ravel()
+        total += counts[i] * ((1.0 - compared.real) ** 2 + compared.imag**2)
     return np.asarray(total[:size] / np.sum(counts[chosen]))
 
 

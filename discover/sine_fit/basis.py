@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from discover.sine_fit.columns import Columns, columns_of
 from discover.sine_fit.design import ComplexArray, harmonic_design
@@ -39,15 +38,15 @@ class _Normal:
         return cls(gram, norms, float(values[0] / values[-1]))
 
     @cached_property
-    def _factor(self) -> Any:
-        return cho_factor(self.gram / np.outer(self.norms, self.norms))
+    def inverse(self) -> Array:
+        """(C, C)."""
+        outer = np.outer(self.norms, self.norms)
+        return np.asarray(np.linalg.inv(self.gram / outer) / outer)
 
     def solve(self, sums: Array) -> Array:
-        """Return coefficients of products with the columns (C,) or (C, K), twice refined."""
-        norms = self.norms if sums.ndim == 1 else self.norms[:, None]
-        found = cho_solve(self._factor, sums / norms) / norms
-        missed = sums - self.gram @ found
-        return np.asarray(found + cho_solve(self._factor, missed / norms) / norms)
+        """Return coefficients of products with the columns (C,), once refined."""
+        found = self.inverse @ sums
+        return np.asarray(found + self.inverse @ (sums - self.gram @ found))
 
 
 class Basis:
@@ -73,7 +72,7 @@ class Basis:
         """Return the inverse normal matrix with a column more: the derivative by frequency."""
         normal = self._normal(beta)
         if normal.spread > _ALIKE:
-            return normal.solve(np.eye(normal.norms.size))
+            return normal.inverse
         design = self._design(beta) / normal.norms
         return _pseudo_inverse(design)[1] / np.outer(normal.norms, normal.norms)
 
@@ -110,7 +109,7 @@ class Basis:
         if normal.spread <= _APART:
             more = normal.solve(self._along(columns, left))
             solution, left = solution + more, left - self._fitted(more, beta)
-        return solution, normal.solve(np.eye(normal.norms.size)), left
+        return solution, normal.inverse, left
 
     def _normal(self, beta: Array | None) -> _Normal:
         """Return the normal matrix, with a column more where `beta` is given."""

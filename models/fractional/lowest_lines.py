@@ -18,6 +18,7 @@ from models.checks import Array
 _POLYNOMIALS = 18  # for up to half a turn in a block: what they miss is below the last bit
 _NODES = 18  # of frequency, between which the polynomials' own lines are interpolated
 _SHORTEST = 20  # samples of a block: of shorter ones all lines cost less
+_AT_ONCE = 2**18  # samples of short records, whose blocks are summed together
 _FEWEST = 4096  # samples of a record, likewise
 
 Lines = NDArray[np.complex128]
@@ -46,11 +47,14 @@ class LowestLines:
             return np.asarray(scipy.fft.rfft(columns, axis=-1)[..., : self.count])
         rows = columns.reshape(-1, self.size // self.block, self.block)
         found = np.empty((rows.shape[0], self.count), dtype=np.complex128)
-        for row, lines in zip(rows, found, strict=True):
-            sums = scipy.fft.rfft(row @ self.polynomials, axis=0)[: self.count] * self.answers
-            lines[:] = sums[:, ::2].sum(axis=1)
-            lines -= 1j * sums[:, 1::2].sum(axis=1)
-            lines *= self.turns.conj()
+        some = max(_AT_ONCE // self.size, 1)
+        for first in range(0, rows.shape[0], some):
+            here = slice(first, first + some)
+            each = scipy.fft.rfft(rows[here] @ self.polynomials, axis=1)[:, : self.count]
+            each *= self.answers
+            found[here] = each[..., ::2].sum(axis=2)
+            found[here] -= 1j * each[..., 1::2].sum(axis=2)
+        found *= self.turns.conj()
         return found.reshape(*columns.shape[:-1], self.count)
 
     def series(self, lines: Lines, samples: int) -> Array:
