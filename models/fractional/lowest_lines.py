@@ -36,10 +36,8 @@ class LowestLines:
     """Samples of a block, which divides `size`; 0 where all lines are taken, as no block serves."""
     polynomials: Array
     """(B, J) on a block, orthonormal."""
-    answers: Array
-    """(K, J) a block's even polynomials times the cosine of each line, odd ones times its sine."""
-    turns: Lines
-    """(K,) of each line in the middle of a block."""
+    answers: Lines
+    """(K, J) the polynomials' products with each line's wave, over a block."""
 
     def of(self, columns: Array) -> Lines:
         """Return the lines (..., K) of records (..., N)."""
@@ -51,10 +49,7 @@ class LowestLines:
         for first in range(0, rows.shape[0], some):
             here = slice(first, first + some)
             each = scipy.fft.rfft(rows[here] @ self.polynomials, axis=1)[:, : self.count]
-            each *= self.answers
-            found[here] = each[..., ::2].sum(axis=2)
-            found[here] -= 1j * each[..., 1::2].sum(axis=2)
-        found *= self.turns.conj()
+            np.einsum("rkj,kj->rk", each, self.answers, out=found[here])
         return found.reshape(*columns.shape[:-1], self.count)
 
     def series(self, lines: Lines, samples: int) -> Array:
@@ -64,10 +59,9 @@ class LowestLines:
         rows = lines.reshape(-1, self.count)
         blocks = self.size // self.block
         wanted = -(-samples // self.block)
-        found = np.empty((rows.shape[0], samples))
+        found, back = np.empty((rows.shape[0], samples)), self.answers.conj()
         for row, series in zip(rows, found, strict=True):
-            sums = (row * self.turns)[:, None] * self.answers
-            sums[:, 1::2] *= 1j
+            sums = row[:, None] * back
             each = scipy.fft.irfft(sums, n=blocks, axis=0)[:wanted] / self.block
             series[:] = (each @ self.polynomials.T).reshape(-1)[:samples]
         return found.reshape(*lines.shape[:-1], samples)
@@ -101,7 +95,7 @@ def lowest_lines(size: int, count: int) -> LowestLines:
     block = _block(size, count)
     if not block:
         none = np.zeros((0, 0))
-        return LowestLines(size, count, 0, none, none, np.zeros(0, dtype=np.complex128))
+        return LowestLines(size, count, 0, none, none.astype(np.complex128))
     middle = 0.5 * (block - 1)
     away = np.arange(block) - middle
     polynomials = np.linalg.qr(
@@ -111,13 +105,11 @@ def lowest_lines(size: int, count: int) -> LowestLines:
     place = 2.0 * omega / max(omega[-1], 1e-300) - 1.0
     nodes = np.polynomial.chebyshev.chebpts1(_NODES)
     angles = np.outer(0.5 * omega[-1] * (nodes + 1.0), away)
-    known = np.where(
-        np.arange(_POLYNOMIALS) % 2 == 0, np.cos(angles) @ polynomials, np.sin(angles) @ polynomials
-    )
+    known = np.exp(-1j * angles) @ polynomials
     between = np.linalg.solve(np.polynomial.chebyshev.chebvander(nodes, _NODES - 1), known)
     answers = np.polynomial.chebyshev.chebvander(place, _NODES - 1) @ between
-    turns = np.exp(1j * omega * middle)
-    return LowestLines(size, count, block, polynomials, answers, turns)
+    answers *= np.exp(-1j * omega * middle)[:, None]
+    return LowestLines(size, count, block, polynomials, answers)
 
 
 def _block(size: int, count: int) -> int:

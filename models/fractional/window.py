@@ -46,7 +46,7 @@ def hann_window(samples: int) -> Array:
 
     Examples
     --------
-    >>> hann_window(5).tolist()
+    >>> hann_window(5).round(12).tolist()
     [0.0, 0.5, 1.0, 0.5, 0.0]
     """
     if samples < 2:
