@@ -43,6 +43,7 @@ class Harmonics:
 
         Examples
         --------
+        >>> from discover.sine_fit import moments
         >>> time = np.arange(4) / 4.0
         >>> sums = Harmonics(moments(time), 1.0).sums(np.cos(2 * np.pi * time)[None], 1)
         >>> np.allclose(sums, [[[0.0, 2.0]]])
@@ -65,6 +66,7 @@ class Harmonics:
 
         Examples
         --------
+        >>> from discover.sine_fit import moments
         >>> own = Harmonics(moments(np.arange(4) / 4.0), 1.0).own(1, powers=2)
         >>> np.allclose(own, [[4.0, 0.0], [1.5, -0.5 - 0.5j]])
         True
@@ -86,6 +88,7 @@ class Harmonics:
 
         Examples
         --------
+        >>> from discover.sine_fit import moments
         >>> Harmonics(moments(np.array([0.0, 0.25])), 1.0).series(np.array([1.0, 2.0, 0.5]) + 0j)
         array([3.5, 0.5])
         """
