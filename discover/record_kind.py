@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from discover.records import Record
-from discover.sine_fit import FEW_CYCLES, Harmonics, SineFit, fit_sine, moments, strongest_line
+from discover.sine_fit import FEW_CYCLES, SineFit, fit_sine, local_phasors, strongest_line
 from models.checks import Array, InputError
+from models.fractional.window import hann_window
 
 KINDS = ("sine", "periodic", "transient", "trajectory")
 
@@ -179,7 +179,7 @@ def _detrended(x: Array) -> Array:
 def _power(x: Array) -> Array:
     """Return the power spectrum of x, detrended and tapered."""
     padded = next_fast_len(x.size, real=True)
-    return np.asarray(np.abs(rfft(_detrended(x) * np.hanning(x.size), padded)) ** 2)
+    return np.asarray(np.abs(rfft(_detrended(x) * hann_window(x.size), padded)) ** 2)
 
 
 def _line_share(power: Array) -> float:
@@ -194,30 +194,6 @@ def _line_share(power: Array) -> float:
     return near / float(power.sum())
 
 
-def _local_phasors(time: Array, x: Array, fit: SineFit) -> tuple[NDArray[np.int_], Array, Array]:
-    """Return window starts, amplitudes and phases of fits over one cycle at a time."""
-    step = float(time[-1] - time[0]) / (time.size - 1)
-    length = min(max(round(1.0 / (fit.frequency * step)), 4), x.size)
-    starts = np.arange(0, x.size - length + 1, max(length // 4, 1))
-    plain = x - fit.coefficients[0].real - fit.trend * (time - time.mean())
-    harmonics = Harmonics(moments(time), fit.frequency)
-    cosine, minus_sine = harmonics.series(np.array([[0.0, 1.0], [0.0, 1j]]))
-    columns = (np.ones(1), cosine, minus_sine)
-
-    def over_windows(values: Array) -> Array:
-        total = np.concatenate([[0.0], np.cumsum(np.broadcast_to(values, x.shape))])
-        return np.asarray(total[starts + length] - total[starts])
-
-    gram = np.empty((3, 3, starts.size))
-    for i, one in enumerate(columns):
-        for j, other in enumerate(columns[: i + 1]):
-            gram[i, j] = gram[j, i] = over_windows(one * other)
-    goal = np.array([over_windows(plain * c) for c in columns])
-    found = np.linalg.pinv(np.moveaxis(gram, 2, 0), hermitian=True) @ goal.T[:, :, None]
-    relative = (found[:, 1, 0] + 1j * found[:, 2, 0]) / fit.coefficients[1]
-    return starts, np.abs(relative), np.angle(relative)
-
-
 def _steady_part(time: Array, x: Array, fit: SineFit) -> slice | None:
     """Return the longest stretch of constant amplitude and phase, or None where it is short.
 
@@ -225,7 +201,8 @@ def _steady_part(time: Array, x: Array, fit: SineFit) -> slice | None:
     """
     if fit.cycles < 3.0:  # too few cycles to tell start-up from steady state
         return slice(0, x.size)
-    starts, amplitude, phase = _local_phasors(time, x, fit)
+    starts, relative = local_phasors(time, x, fit)
+    amplitude, phase = np.abs(relative), np.angle(relative)
     length = x.size - int(starts[-1]) if starts.size else x.size
     level = float(np.median(amplitude[amplitude > 0.3 * amplitude.max()]))
     moving = amplitude > 0.1 * level

@@ -11,6 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from discover.executor import Lost, executor
 from discover.motion_fit.band import BandFound, find_band, observe_band
+from discover.motion_fit.clear_samples import Clear
 from discover.motion_fit.cycle_sums import POINTS
 from discover.motion_fit.harmonic import find_sine, observed
 from discover.motion_fit.long_sine import find_long_sine
@@ -47,7 +48,11 @@ def observe(record: Record) -> Observation:
     """
     kind = classify(record)
     if kind.kind == "sine":
-        return observed(record, record.once(_sine))
+        clear = None
+        if _sine not in record.found:
+            found, clear = _sine_and_clear(record)
+            record.learn({_sine: found})
+        return observed(record, record.once(_sine), clear)
     even = record.even
     if even is not record:
         if record.gaps:
@@ -58,21 +63,30 @@ def observe(record: Record) -> Observation:
         kind = classify(even)
     if kind.kind == "periodic" and kind.period is not None:
         return observe_periodic(even, kind.usable, round(kind.period / even.step))
-    return observe_band(even, kind.usable, kind.kind, record.once(_band))
+    motion = None
+    if _band not in record.found:
+        band, motion = find_band(even, kind.usable)
+        record.learn({_band: band})
+    return observe_band(even, kind.usable, kind.kind, record.once(_band), motion)
 
 
 def _sine(record: Record) -> SineFound:
+    return _sine_and_clear(record)[0]
+
+
+def _sine_and_clear(record: Record) -> tuple[SineFound, Clear | None]:
+    """Return what is found in a sine test, and which samples are clear where all are held."""
     kind = classify(record)
     frequency = kind.frequency or record.frequency
     if frequency is None:
         raise InputError("frequency", expected="found or given", where=record.file)
     if record.long is not None and kind.sine is not None:
-        return find_long_sine(record, record.long, kind.usable, kind.sine)
+        return find_long_sine(record, record.long, kind.usable, kind.sine), None
     return find_sine(record, kind.usable, frequency, kind.sine)
 
 
 def _band(record: Record) -> BandFound:
-    return find_band(record.even, classify(record.even).usable)
+    return find_band(record.even, classify(record.even).usable)[0]
 
 
 def found_in(record: Record) -> Found:

@@ -17,6 +17,7 @@ from discover.motion_fit.observation import Lines, Observation, Window
 from discover.records import Record
 from models.checks import Array, InputError
 from models.fractional import band_limited, low_pass
+from models.fractional.lowest_lines import lowest_lines
 from models.motion import Motion
 
 _SIGNAL_TO_NOISE = 1000.0  # of the displacement's power, at the edge of the excited band
@@ -166,9 +167,10 @@ def _crossing(inner: int, count: int) -> int:
 
 def _projection(inside: slice, taper: Array, count: int) -> Callable[[Array], Lines]:
     scale = np.sqrt(2.0 / (taper.size * np.sum(taper**2)))
+    wanted = lowest_lines(taper.size, count)
 
     def project(columns: Array) -> Lines:
-        lines = np.fft.rfft(columns[..., inside] * taper, axis=-1)[..., :count] * scale
+        lines = wanted.of(columns[..., inside] * taper) * scale
         lines[..., 0] /= np.sqrt(2.0)
         return np.asarray(lines, dtype=np.complex128)
 
@@ -223,8 +225,8 @@ class BandFound:
     """Of the force."""
 
 
-def find_band(record: Record, usable: slice) -> BandFound:
-    """Return band and noise of a record; arguments and errors as of `observe_band`."""
+def find_band(record: Record, usable: slice) -> tuple[BandFound, Motion]:
+    """Return band and noise of a record, and its motion; arguments as of `observe_band`."""
     step, (time, x, force) = record.step, _columns(record, usable)
     spectrum = power_density(x - x.mean(), step)
     cutoff, follows = np.inf, _cutoff(*spectrum)
@@ -235,11 +237,15 @@ def find_band(record: Record, usable: slice) -> BandFound:
         inner = _inner(_pieces(time.size, cutoff * step))
         found = band_noise(motion, x, force, step, cutoff, inner)
         follows = found.follows
-    return BandFound(cutoff, displacement_noise, found.spectrum)
+    return BandFound(cutoff, displacement_noise, found.spectrum), motion
 
 
 def observe_band(
-    record: Record, usable: slice, kind: str, found: BandFound | None = None
+    record: Record,
+    usable: slice,
+    kind: str,
+    found: BandFound | None = None,
+    motion: Motion | None = None,
 ) -> Observation:
     """Return the observation of a sweep, a random record, an earthquake or a trajectory.
 
@@ -253,6 +259,8 @@ def observe_band(
         Recorded in the result.
     found : BandFound, optional
         Its band and noise; found here where not given.
+    motion : Motion, optional
+        In that band, where it is there from finding it.
 
     Returns
     -------
@@ -260,9 +268,11 @@ def observe_band(
         With up to sixteen windows.
     """
     step, (time, x, force) = record.step, _columns(record, usable)
-    found = find_band(record, usable) if found is None else found
+    if found is None:
+        found, motion = find_band(record, usable)
     cutoff, noise = found.cutoff, found.noise
-    motion = _band_motion(record, usable, x, cutoff, found.displacement_noise)
+    if motion is None:
+        motion = _band_motion(record, usable, x, cutoff, found.displacement_noise)
     pieces = _pieces(time.size, cutoff * step)
     inner = _inner(pieces)
     mass = sum(float(np.sum(taper**2)) for _, taper in pieces)

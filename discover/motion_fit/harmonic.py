@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from discover.motion_fit.clear_samples import Clear, clear_samples
 from discover.motion_fit.cycle_sums import PHASES, STRETCHES, CycleSums, cycle_sums
 from discover.motion_fit.harmonic_lines import HarmonicLines, harmonic_lines, lines_of
 from discover.motion_fit.noise import density_between_lines
@@ -17,7 +17,7 @@ from discover.motion_fit.noise_spectrum import noise_spectrum
 from discover.motion_fit.observation import Lines, Observation, Window, real_rows
 from discover.motion_fit.sine_found import SineFound
 from discover.records import Record
-from discover.sine_fit import Harmonics, LongFit, Moments, SineFit, harmonic_series, moments
+from discover.sine_fit import Harmonics, LongFit, Moments, SineFit, moments
 from models.checks import Array, InputError
 from models.fractional import harmonic_factors
 from models.motion import Motion, harmonic_motion
@@ -26,9 +26,7 @@ HARMONICS = 31  # of the force; friction's fall off as 1/k, so further ones deci
 GRID = 1024  # points of the one cycle kept for steady-state simulation
 RELATIVE_FLOOR = 1e-6  # of the force: no measurement is better, and weights stay finite
 _PHASES = 360  # of a motion that is not measured, tried at even steps
-_REVERSAL = 3e-3  # of the speed amplitude
 _PIECE = 2**16  # samples
-BoolArray = NDArray[np.bool_]
 
 
 def _motion_at(at: Moments, frequency: float, displacement: Lines) -> Motion:
@@ -45,20 +43,6 @@ def _motion_at(at: Moments, frequency: float, displacement: Lines) -> Motion:
 
     x, v, a = differentiate(np.array([0.0, 1.0, 2.0]))
     return Motion(at.time, x, v, a, differentiate, "weyl")
-
-
-def moving(at: Moments, frequency: float, displacement: Lines | None) -> BoolArray:
-    """Return which samples lie clear of the reversals of motion.
-
-    Where friction reverses, a sample is on one side or the other by chance: where sampling and
-    test are in step, always the same ones. They are a five-hundredth of the samples.
-    """
-    if displacement is None:
-        return np.ones(at.time.size, dtype=bool)
-    phasors = 1j * np.arange(displacement.size) * displacement
-    cycle = harmonic_series(np.arange(GRID) / (GRID * frequency), frequency, phasors)
-    velocity = Harmonics(at, frequency).series(phasors)
-    return np.asarray(np.abs(velocity) > _REVERSAL * float(np.abs(cycle).max()))
 
 
 def velocity_phase(displacement: Lines | None) -> float:
@@ -114,7 +98,7 @@ def observe_sine(
     InputError
         Where fewer than one and a half cycles are usable, or the sampling resolves no harmonic.
     """
-    return observed(record, find_sine(record, usable, frequency, sine))
+    return observed(record, *find_sine(record, usable, frequency, sine))
 
 
 def find_sine(
@@ -122,21 +106,23 @@ def find_sine(
     usable: slice,
     frequency: float,
     sine: SineFit | LongFit | None,
-) -> SineFound:
-    """Return what the samples of a sine test tell; arguments and errors as of `observe_sine`."""
+) -> tuple[SineFound, Clear]:
+    """Return what the samples of a sine test tell, and those that lie clear of reversals.
+
+    Arguments and errors as of `observe_sine`.
+    """
     time, force = record.time[usable], record.force[usable]
     displacement = None if sine is None else sine.coefficients
     duration = _duration(time)
     count = _resolved_harmonics(time.size, duration * frequency, record.file)
     middle = _middle(time, frequency)
-    every = moments(time)
-    clear = moving(every, frequency, displacement)
-    at = every.of(clear)
+    clear = clear_samples(time, frequency, displacement)
+    at = clear.at
     fit = harmonic_lines(at, frequency, count, middle=middle)
-    (solution,) = fit.solve(force[None, clear])
     residual = np.zeros(time.size)
-    residual[clear] = force[clear] - fit.fitted(solution)
-    time, force = fit.time, force[clear]
+    time, force = at.time, force[clear.kept]
+    (solution,) = fit.solve(force[None])
+    residual[clear.kept] = force - fit.fitted(solution)
     (lines,) = lines_of(solution[None], count)
     multiples: Array = frequency * np.arange(count + 1, dtype=np.float64)
     if record.uniform:
@@ -153,7 +139,7 @@ def find_sine(
     fitted_phase = displacement is None
     if displacement is None:
         displacement = _fit_phase(record, lines, fit.lines, at, frequency, variance)
-    return SineFound(
+    found = SineFound(
         usable=usable,
         frequency=frequency,
         displacement=displacement,
@@ -168,15 +154,19 @@ def find_sine(
         drift=0.0 if middle is None else float(solution[-1]),
         sums=_sums(time, force, frequency),
     )
+    return found, clear
 
 
-def observed(record: Record, found: SineFound) -> Observation:
-    """Return the observation of a sine test at the samples that are held of it."""
+def observed(record: Record, found: SineFound, clear: Clear | None = None) -> Observation:
+    """Return the observation of a sine test at the samples that are held of it.
+
+    Those that lie `clear` of reversals may be there from finding it.
+    """
     time, force = record.time[found.usable], record.force[found.usable]
     frequency, displacement = found.frequency, found.displacement
-    every = moments(time)
-    clear = moving(every, frequency, None if found.phase_fitted else displacement)
-    at = every.of(clear)
+    if clear is None:
+        clear = clear_samples(time, frequency, None if found.phase_fitted else displacement)
+    at = clear.at
     amplitude, count = float(abs(displacement[1])), found.force.size - 1
     window = Window(
         omega=2.0 * np.pi * (frequency * np.arange(count + 1, dtype=np.float64)),
@@ -199,7 +189,7 @@ def observed(record: Record, found: SineFound) -> Observation:
         at=lambda time: _motion_at(moments(time), frequency, displacement),
         windows=(window,),
         time=at.time,
-        measured=force[clear],
+        measured=force[clear.kept],
         at_samples=lambda column: column,
         displacement_noise=found.displacement_noise,
         motion_error=found.motion_error,

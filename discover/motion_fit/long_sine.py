@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from discover.motion_fit.clear_samples import moving
 from discover.motion_fit.cycle_sums import cycle_sums
-from discover.motion_fit.harmonic import RELATIVE_FLOOR, find_sine, moving, velocity_phase
+from discover.motion_fit.harmonic import RELATIVE_FLOOR, find_sine, velocity_phase
 from discover.motion_fit.harmonic_lines import LineSums, lines_of
 from discover.motion_fit.sine_found import SineFound
 from discover.records import LongRecord, Piece, Record
@@ -51,7 +52,7 @@ def find_long_sine(
         lambda: ((p.time, p.displacement) for p in steady()), long.samples - start, head,
         record.time[usable], record.displacement[usable], where=record.file,
     )  # fmt: skip
-    first_part = find_sine(record, usable, fit.frequency, fit)
+    first_part, _ = find_sine(record, usable, fit.frequency, fit)
     count = first_part.force.size - 1
     fitted = LineSums(
         fit.frequency, count, middle=0.5 * (fit.first + float(fit.last[-1]))

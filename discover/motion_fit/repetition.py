@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import convolve1d
-from scipy.sparse import csr_array
 
 from discover.motion_fit.harmonic_lines import harmonic_lines
 from discover.motion_fit.noise import power_density
-from discover.sine_fit import harmonic_design, moments
-from models.checks import Array
-from models.compiled import compiled
+from discover.motion_fit.same_phase import SamePhase, same_phase
+from discover.sine_fit import ComplexArray, harmonic_design, moments
+from models.checks import Array, Indices
+from models.fractional.lowest_lines import lowest_lines
 
 _FEWEST_CYCLES = 1.5  # that can be compared
 _ENOUGH_CYCLES = 6.0  # of a long record, that are compared
@@ -26,8 +26,6 @@ _FEWEST_SAMPLES, _MOST_SAMPLES = 32, 60_000  # that are compared
 _FEWEST_BINS = 5  # from which a level of noise can be told
 _HALF_WIDTH = 0.75  # of a sample's share of the cycle, to either side
 _FEWEST_NEIGHBOURS = 4.0  # in phase, itself among them: fewer leave nothing beside a line
-_LEAST_WEIGHT = 1e-3  # of a neighbour in phase, against one at the same phase
-_SLOPED = 1e-3  # of the weights' square, by which their phases have to differ for a slope
 _HARMONICS = 31  # lowest of the force, taken out before cycles are compared
 _RESOLVED = 0.12  # of the sampling rate: what is slower is smooth over one sample
 _SLOW = 3  # orders of slow change at most
@@ -43,7 +41,6 @@ _AROUND = 4.0  # samples to either side of a phase that are judged with it
 _LEAST_KEPT = 0.25  # of the samples; with fewer, none is left out
 _SAMPLES_EACH = 120  # for every harmonic that may change
 _PROBED = 48  # samples at which the comparison's response is evaluated
-_NEAREST = 8  # samples in phase, to either side, that one is compared with at most
 _LEAST_GAIN = 0.35  # of the noise's power, that has to be left beside a harmonic
 _CLEAR = 1.5  # bins from a harmonic: nearer ones also see what changes it slowly
 _ENOUGH_BINS = 30  # clear of harmonics, with which those beside them are not needed
@@ -89,15 +86,14 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     order = np.argsort(phase, kind="stable")
     cycles = time.size * step * frequency
     half = max(_HALF_WIDTH, _FEWEST_NEIGHBOURS / (2.0 * cycles)) * step * frequency
-    same = _same_phase(phase[order], order, half)
-    own = same.diagonal()
+    same = same_phase(phase[order], order, half)
+    own = same.own
     steady = _without_lowest(time, force, frequency, step)
-    repeated = same @ steady
-    left = steady - repeated
+    left = same.left(steady[:, None])[:, 0]
     kept = _smooth_phases(left, own, order, cycles)
     if np.count_nonzero(kept) < _FEWEST_SAMPLES:
         return None
-    changes = _changes(same, time, repeated, frequency, cycles)
+    changes = _changes(same, time, steady - left, frequency, cycles)
     left = _without(left, changes, kept)
     kept = _smooth_phases(left, own, order, cycles)
     at = np.rint((time - time[0]) / step).astype(int)
@@ -140,135 +136,71 @@ def _changing(samples: int, cycles: float) -> int:
     return int(np.clip(samples // _SAMPLES_EACH, 1, most))
 
 
-def _changes(
-    same: csr_array, time: Array, repeated: Array, frequency: float, cycles: float
-) -> Array:
-    """Return what slow changes make of the difference between cycles, (N, C): that is no noise.
+@dataclass(frozen=True)
+class _Changes:
+    """What slow changes make of the difference between cycles: that is no noise."""
 
-    The mean may change, and the size of what repeats and of its lowest harmonics: by no more
-    than a straight line where the cycles are few, as they would take in the noise.
+    columns: Array
+    """(N, C)."""
+    norms: Array
+    """(C,) of the columns."""
+
+    def inside(self, kept: Kept) -> Array:
+        """Return the columns, zero at samples that are not kept: what changes is not known."""
+        return np.asarray(self.columns * kept[:, None])
+
+    def turn(self, inside: Array) -> Array:
+        """Return what makes columns (N, C) orthonormal ones that span the same, (C, R)."""
+        values, turn = np.linalg.eigh(inside.T @ inside / np.outer(self.norms, self.norms))
+        if values[0] < _SQUARED * values[-1]:  # squares have lost what is nearly the same
+            triangle = np.linalg.qr(inside / self.norms, mode="r")
+            _, sizes, turned = np.linalg.svd(triangle, full_matrices=False)
+            there = sizes > _SAME * sizes[0]
+            turn, values = turned[there].T, sizes[there] ** 2
+        return np.asarray(turn / np.sqrt(values) / self.norms[:, None])
+
+
+def _changes(
+    same: SamePhase, time: Array, repeated: Array, frequency: float, cycles: float
+) -> _Changes:
+    """Return what may change slowly.
+
+    The mean, and the size of what repeats and of its lowest harmonics: by no more than a straight
+    line where the cycles are few, as they would take in the noise.
     """
     centred_time = 2.0 * (time - time[0]) / (time[-1] - time[0]) - 1.0
     order = int(np.clip(cycles // _CYCLES_EACH, 1, _SLOW))
     slow = np.polynomial.legendre.legvander(centred_time, order)[:, 1:]
     lowest = harmonic_design(time, frequency, _changing(time.size, cycles))
     carriers = np.column_stack([lowest, repeated])
-    changes = (slow[:, :, None] * carriers[:, None, :]).reshape(time.size, -1)
-    moved = changes - same @ changes
-    return np.asarray(moved / np.maximum(np.linalg.norm(moved, axis=0), 1e-300))
+    changes = np.empty((time.size, order, carriers.shape[1]))
+    np.multiply(slow[:, :, None], carriers[:, None, :], out=changes)
+    moved = same.left(changes.reshape(time.size, -1))
+    return _Changes(moved, np.maximum(np.linalg.norm(moved, axis=0), 1e-300))
 
 
-def _without(left: Array, changes: Array, kept: Kept) -> Array:
-    """Return what cycles differ by without changes (N, C); samples that are not kept stay.
-
-    What changes is not known there.
-    """
-    inside = changes[kept]
-    turn = _orthonormal(inside)
-    result = left.copy()
-    result[kept] -= inside @ (turn @ (turn.T @ (inside.T @ left[kept])))
-    return result
+def _without(left: Array, changes: _Changes, kept: Kept) -> Array:
+    """Return what cycles differ by without slow changes; samples that are not kept stay."""
+    inside = changes.inside(kept)
+    turn = changes.turn(inside)
+    return np.asarray(left - inside @ (turn @ (turn.T @ (inside.T @ left))))
 
 
-def _orthonormal(columns: Array) -> Array:
-    """Return what makes columns (N, C) orthonormal ones that span the same, (C, R)."""
-    values, turn = np.linalg.eigh(columns.T @ columns)
-    if values[0] < _SQUARED * values[-1]:  # squares have lost what is nearly the same
-        _, sizes, turned = np.linalg.svd(np.linalg.qr(columns, mode="r"), full_matrices=False)
-        there = sizes > _SAME * sizes[0]
-        return np.asarray(turned[there].T / sizes[there])
-    return np.asarray(turn / np.sqrt(values))
-
-
-def _left_by(
-    changes: Array, same: csr_array, at: NDArray[np.intp], kept: Kept, bins: int
-) -> Array:
+def _left_by(changes: _Changes, same: SamePhase, at: Indices, kept: Kept, bins: int) -> Array:
     """Return the share of a wave's power that slow changes leave, at the lowest `bins` (F,).
 
     A wave's power after the comparison depends on lags between samples alone, and its part along
     slow changes on what these are before it: both are spectra, so that no wave is formed.
     """
     size = int(at[-1]) + 1
-    inside = changes[kept]
-    lags = _lag_products(same.indptr, same.indices, same.data, at, np.flatnonzero(kept), size)
-    power = np.maximum(np.fft.rfft(lags)[:bins].real, 1e-300)
-    whole = np.zeros_like(changes)
-    whole[kept] = inside
-    before = (whole - same.T @ whole) @ _orthonormal(inside)
-    spread = np.zeros((before.shape[1], size))
-    spread[:, at] = before.T
-    lines = np.fft.rfft(spread, axis=1)[:, :bins]
+    lowest, inside = lowest_lines(size, bins), changes.inside(kept)
+    power = lowest.of(same.lag_products(at, np.flatnonzero(kept), size)).real
+    spread = np.zeros((inside.shape[1], size))
+    spread[:, at] = same.spread(inside).T
+    lines = changes.turn(inside).T @ lowest.of(spread)
     # A harmonic has no power, but for rounding.
-    return np.asarray(np.clip(1.0 - np.sum(np.abs(lines) ** 2, axis=0) / power, 0.0, 1.0))
-
-
-@compiled(cache=True)
-def _lag_products(
-    begin: NDArray[np.int32], places: NDArray[np.int32], weights: Array, at: NDArray[np.intp],
-    rows: NDArray[np.intp], size: int,
-) -> Array:
-    """Return products of a sample's and its comparison's weights, summed by lag, (size,).
-
-    Over some `rows` of the comparison; lags count in steps, in a circle of `size`.
-    """
-    found = np.zeros(size)
-    for i in rows:
-        found[0] += 1.0
-        for j in range(begin[i], begin[i + 1]):
-            found[abs(at[places[j]] - at[i])] -= 2.0 * weights[j]
-            found[0] += weights[j] * weights[j]
-            for k in range(begin[i], j):
-                lag = abs(at[places[j]] - at[places[k]])
-                found[lag] += 2.0 * weights[j] * weights[k]
-    return found
-
-
-def _same_phase(phase: Array, order: NDArray[np.intp], half: float) -> csr_array:
-    """Return what maps a force (N,) to the line through it around each sample's phase.
-
-    `phase` rises; `order` says which sample each belongs to.
-    """
-    size = phase.size
-    around = np.concatenate([phase - 1.0, phase, phase + 1.0])
-    here = np.arange(size, 2 * size)
-    first = np.maximum(np.searchsorted(around, phase - half, side="left"), here - _NEAREST)
-    last = np.minimum(np.searchsorted(around, phase + half, side="right"), here + _NEAREST + 1)
-    count = np.empty(size, dtype=np.intp)
-    count[order] = last - first
-    begin = np.concatenate(([0], np.cumsum(count)))
-    places, weights = _lines_through(around, order, first, last, begin, half)
-    return csr_array((weights, places, begin), shape=(size, size))
-
-
-@compiled(cache=True)
-def _lines_through(
-    around: Array, order: NDArray[np.intp], first: NDArray[np.intp], last: NDArray[np.intp],
-    begin: NDArray[np.intp], half: float,
-) -> tuple[NDArray[np.intp], Array]:
-    """Return samples (E,) and weights (E,) of the line at each sample's phase, in their order."""
-    size = order.size
-    places, weights = np.empty(begin[-1], dtype=np.intp), np.empty(begin[-1])
-    for i in range(size):
-        own, at = around[size + i], begin[order[i]]
-        zeroth = one = two = 0.0
-        for k in range(first[i], last[i]):
-            away = (around[k] - own) / half
-            weight = max(1.0 - away * away, _LEAST_WEIGHT)
-            zeroth += weight
-            one += weight * away
-            two += weight * away * away
-        spread = zeroth * two - one * one
-        sloped = spread > _SLOPED * zeroth * zeroth
-        for k in range(first[i], last[i]):
-            away = (around[k] - own) / half
-            weight = max(1.0 - away * away, _LEAST_WEIGHT)
-            if sloped:
-                weights[at] = weight * (two - one * away) / spread
-            else:
-                weights[at] = weight / zeroth
-            places[at] = order[k % size]
-            at += 1
-    return places, weights
+    taken = np.sum(np.abs(lines) ** 2, axis=0) / np.maximum(power, 1e-300)
+    return np.asarray(np.clip(1.0 - taken, 0.0, 1.0))
 
 
 def _smooth_phases(
@@ -292,7 +224,7 @@ def _smooth_phases(
     return kept if np.mean(kept) > _LEAST_KEPT else known
 
 
-def _response(same: csr_array, time: Array, counts: Array, width: float, size: int) -> Array:
+def _response(same: SamePhase, time: Array, counts: Array, width: float, size: int) -> Array:
     """Return the power that the comparison leaves of a wave, mean over samples, (F,).
 
     Of the samples each `counts` (N,) so much. At `size` multiples of `width` (Hz): each wave is a
@@ -301,12 +233,23 @@ def _response(same: csr_array, time: Array, counts: Array, width: float, size: i
     kept = np.flatnonzero(counts)
     chosen = kept[np.unique(np.linspace(0, kept.size - 1, _PROBED).astype(int))]
     block = int(np.ceil(np.sqrt(size)))
-    steps = np.arange(block)
     total = np.zeros(block * block)
     for i in chosen:
-        part = slice(same.indptr[i], same.indptr[i + 1])
-        turns = 2j * np.pi * width * (time[same.indices[part]] - time[i])
-        fine = np.exp(np.outer(turns, steps))
-        coarse = same.data[part, None] * np.exp(np.outer(turns, block * steps))
-        total += counts[i] * np.abs(1.0 - (coarse.T @ fine).ravel()) ** 2
+        part = slice(same.begin[i], same.begin[i + 1])
+        turns = 2j * np.pi * width * (time[same.places[part]] - time[i])
+        fine = _powers(np.exp(turns), block)
+        coarse = same.weights[part, None] * _powers(np.exp(block * turns), block)
+        compared = (coarse.T @ fine).ravel()
+        total += counts[i] * ((1.0 - compared.real) ** 2 + compared.imag**2)
     return np.asarray(total[:size] / np.sum(counts[chosen]))
+
+
+def _powers(waves: ComplexArray, count: int) -> ComplexArray:
+    """Return powers 0 to `count` - 1 of unit phasors (E,), (E, count)."""
+    found = np.ones((waves.size, count), dtype=np.complex128)
+    known, last = 1, waves[:, None]
+    while known < count:  # each time twice as many
+        more = min(known, count - known)
+        found[:, known : known + more] = found[:, :more] * last
+        known, last = known + more, last * last
+    return found

@@ -6,11 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.fft import next_fast_len, rfft
 
-from discover.sine_fit.design import harmonic_design
-from discover.sine_fit.harmonic_sums import Moments, moments
-from discover.sine_fit.solution import Basis, SineFit, Solution
+from discover.sine_fit.basis import Basis
+from discover.sine_fit.moments import Moments, moments
+from discover.sine_fit.solution import SineFit, Solution
 from models.checks import Array, InputError, finite_array, number
+from models.fractional.window import hann_window
 
+_ROUNDING = 1e-15  # of a signal's square sum: less is no difference
 FEW_CYCLES = 12.0  # below this many cycles a spectrum's peak is off by its own mirror image
 
 
@@ -133,7 +135,7 @@ def _start(tau: Array, z: Array, duration: float) -> float:
     )
     slope = (grid @ even) / (grid @ grid)
     padded = next_fast_len(4 * size, real=True)
-    tapered = (even - even.mean() - slope * grid) * np.hanning(size)
+    tapered = (even - even.mean() - slope * grid) * hann_window(size)
     bin_width = (size - 1) / duration / padded
     start = strongest_line(np.abs(rfft(tapered, padded)) ** 2, bin_width, duration)
     return start if start * duration >= FEW_CYCLES else _scan(tau, z, start, duration)
@@ -173,14 +175,15 @@ def _scan(tau: Array, z: Array, start: float, duration: float) -> float:
     stride = max(1, z.size // 800)
     t, y = tau[::stride], z[::stride]
     lowest = 0.4 / duration
-    best, best_cost = start, np.inf
-    for f in np.linspace(max(lowest, start - 1.5 / duration), start + 1.5 / duration, 61):
-        design = harmonic_design(t, float(f), 1, trend=True)  # more would fit f / 2 as well
-        residual = y - design @ np.linalg.lstsq(design, y, rcond=None)[0]
-        cost = float(residual @ residual)
-        if cost < best_cost:
-            best, best_cost = float(f), cost
-    return best
+    tried = np.linspace(max(lowest, start - 1.5 / duration), start + 1.5 / duration, 61)
+    angle = 2.0 * np.pi * tried[:, None] * t
+    columns = np.stack(  # harmonics would fit half the frequency as well
+        [np.broadcast_to(1.0, angle.shape), np.cos(angle), np.sin(angle),
+         np.broadcast_to(t - t.mean(), angle.shape)], axis=2,
+    )  # fmt: skip
+    basis = np.linalg.qr(columns)[0]
+    explained = np.sum((y @ basis) ** 2, axis=1)
+    return float(tried[int(np.argmax(explained))])
 
 
 def _refine(
@@ -196,17 +199,15 @@ def _refine(
     duration = float(at.time[-1] - at.time[0])
     lowest = 0.3 / duration
     omega, last_cost, step = 2.0 * np.pi * frequency, np.inf, 0.0
+    rounding = _ROUNDING * float(z @ z)
     for _ in range(25):
-        basis = Basis(at, omega / (2.0 * np.pi), orders, trend=trend)
-        beta, _, residual = basis.solve(z)
-        cost = float(residual @ residual)
-        if cost > last_cost * (1.0 + 1e-12) and abs(step) * duration > 1e-9:
+        cost, next_step = Basis(at, omega / (2.0 * np.pi), orders, trend=trend).newton(z)
+        if cost > last_cost * (1.0 + 1e-12) + rounding and abs(step) * duration > 1e-9:
             step *= 0.5
             omega -= step
             continue
         last_cost = cost
-        step = float(basis.solve(residual, beta)[0][-1])
-        step = float(np.clip(step, -1.5 / duration, 1.5 / duration))
+        step = float(np.clip(next_step, -1.5 / duration, 1.5 / duration))
         step = max(step, 2.0 * np.pi * lowest - omega)
         omega += step
         if abs(step) * duration < settled:

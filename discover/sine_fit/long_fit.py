@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
+from discover.sine_fit.basis import frequency_column
 from discover.sine_fit.design import ComplexArray, harmonic_design
 from discover.sine_fit.fit import allowed_harmonics
-from discover.sine_fit.harmonic_sums import moments
-from discover.sine_fit.solution import SineFit, Solution, frequency_column, significant
+from discover.sine_fit.moments import moments
+from discover.sine_fit.solution import SineFit, Solution, significant
 from models.checks import Array, InputError
 
 _BLOCK = 4096  # samples: with their columns they stay in the processor's cache

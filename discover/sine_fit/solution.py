@@ -1,19 +1,25 @@
-"""The linear part of a sine fit: solution at one frequency, its noise, what is significant."""
+"""The solution of a sine fit at one frequency: its noise, and what is significant."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from numpy.typing import NDArray
 
-from discover.sine_fit.design import ComplexArray, harmonic_design
-from discover.sine_fit.harmonic_sums import Columns, Harmonics, Moments, columns_of
+from discover.sine_fit.basis import Basis
+from discover.sine_fit.design import ComplexArray
+from discover.sine_fit.moments import Moments
 from models.checks import Array
+from models.fractional.lowest_lines import lowest_lines
+from models.fractional.window import hann_window
 
 _NEAREST = 24  # bins whose median is the noise beside a harmonic
+_BESIDE = 8  # bins beyond those, which a harmonic hides
+_FEWEST = 8  # bins clear of harmonics, from which a level can be told
 _NEGLIGIBLE = 1e-12  # of the fundamental: rounding, not a harmonic
 
 
@@ -71,105 +77,6 @@ class SineFit:
         }
 
 
-class Basis:
-    """Mean, harmonics and perhaps a trend at samples, as products alone: no column is formed."""
-
-    def __init__(
-        self, at: Moments, frequency: float, orders: tuple[int, ...], *, trend: bool
-    ) -> None:
-        self.at, self.frequency, self.orders, self.trend = at, frequency, orders, trend
-        self.columns = columns_of(orders, trend=trend)
-        self._harmonics = Harmonics(at, frequency)
-        self._own = self._harmonics.own(2 * max(orders), powers=3)
-
-    def solve(self, y: Array, beta: Array | None = None) -> tuple[Array, Array, Array]:
-        """Return least-squares coefficients, the inverse normal matrix, and what is left of y.
-
-        Parameters
-        ----------
-        y : ndarray, shape (N,)
-            Signal.
-        beta : ndarray, shape (C,), optional
-            Coefficients whose derivative by angular frequency is a further column.
-        """
-        columns = self.columns if beta is None else self._turning(beta)
-        gram = columns.products(self._own)
-        if beta is not None:
-            gram = _last_as_one(_last_as_one(gram, self.columns.size).T, self.columns.size)
-        norms = np.sqrt(np.diagonal(gram))
-        gram = gram / np.outer(norms, norms)
-        values = np.linalg.eigvalsh(gram)
-        if values[0] > 1e-6 * values[-1]:  # nearly orthogonal: squaring the condition costs nothing
-            factor = cho_factor(gram)
-            solution, left = np.zeros(norms.size), y
-            for _ in range(2):
-                solution = solution + cho_solve(factor, self._along(columns, left) / norms) / norms
-                left = y - self._fitted(solution, beta)
-            inverse = cho_solve(factor, np.eye(norms.size))
-        else:
-            design = self._design(beta)
-            u, s, vt = np.linalg.svd(design / norms, full_matrices=False)
-            s = np.maximum(s, 1e-13 * s[0])
-            solution = vt.T @ ((u.T @ y) / s) / norms
-            inverse = (vt.T / s**2) @ vt
-            left = y - design @ solution
-        return solution, inverse / np.outer(norms, norms), left
-
-    def _along(self, columns: Columns, y: Array) -> Array:
-        """Return products of columns with a signal; beyond the basis' own they are one."""
-        highest, powers = max(self.orders), 1 + int(columns.power.max())
-        sums = self._harmonics.sums(y[None], highest, powers=powers)
-        return _last_as_one(columns.along(sums)[0], self.columns.size)
-
-    def _turning(self, beta: Array) -> Columns:
-        """Return the columns, and those whose sum is the derivative by angular frequency."""
-        k = np.array(self.orders)
-        turning = Columns(k, np.ones_like(k), 1j * k * self._phasors(beta)[k])
-        return self.columns.followed_by(turning)
-
-    def _fitted(self, solution: Array, beta: Array | None) -> Array:
-        """Return what coefficients make of the columns, (N,)."""
-        size = self.columns.size
-        fitted = self._harmonics.series(self._phasors(solution))
-        if self.trend:
-            fitted += solution[size - 1] * self.at.time
-        if beta is not None:
-            turning = 1j * np.arange(max(self.orders) + 1) * self._phasors(beta)
-            fitted += solution[-1] * self.at.time * self._harmonics.series(turning)
-        return fitted
-
-    def _phasors(self, solution: Array) -> ComplexArray:
-        phasors = np.zeros(max(self.orders) + 1, dtype=np.complex128)
-        phasors[0] = solution[0]
-        for i, k in enumerate(self.orders):
-            phasors[k] = complex(solution[1 + 2 * i], solution[2 + 2 * i])
-        return phasors
-
-    def _design(self, beta: Array | None) -> Array:
-        tau = self.at.time
-        design = harmonic_design(tau, self.frequency, self.orders)
-        parts = [design, tau[:, None]] if self.trend else [design]
-        if beta is not None:
-            parts.append(frequency_column(tau, design, beta, self.orders)[:, None])
-        return np.concatenate(parts, axis=1)
-
-
-def _last_as_one(values: Array, size: int) -> Array:
-    """Return rows (C, ...) of which those from `size` on, where there are any, are added up."""
-    if values.shape[0] == size:
-        return values
-    return np.concatenate([values[:size], values[size:].sum(axis=0, keepdims=True)])
-
-
-def frequency_column(tau: Array, design: Array, beta: Array, orders: Sequence[int]) -> Array:
-    """Return the derivative of the fit by angular frequency."""
-    column = np.zeros(tau.size)
-    for i, k in enumerate(orders):
-        cosine, minus_sine = design[:, 1 + 2 * i], design[:, 2 + 2 * i]
-        column += k * (beta[1 + 2 * i] * minus_sine - beta[2 + 2 * i] * cosine)
-    return np.asarray(column * tau)
-
-
 def significant(
     beta: Array, variance: Array, local: Mapping[int, float], orders: Sequence[int], duration: float
 ) -> tuple[tuple[int, ...], bool]:
@@ -221,7 +128,7 @@ class Solution:
         self.beta, inverse, self.residual = basis.solve(z)
         self.with_frequency = with_frequency
         if with_frequency:
-            inverse = basis.solve(self.residual, self.beta)[1]
+            inverse = basis.inverse(self.beta)
         self.variance = np.diag(inverse)
         self.size = self.beta.size + int(with_frequency)
         self._measure_noise()
@@ -229,21 +136,18 @@ class Solution:
     def _measure_noise(self) -> None:
         """Set the noise density (as a white variance) at each harmonic and overall."""
         n = self.z.size
-        freedom = max(n - self.size, 1)
-        self.total = float(self.residual @ self.residual) / freedom
-        duration = float(self.tau[-1] - self.tau[0])
-        window = np.hanning(n)
-        density = np.abs(np.fft.rfft(self.residual * window)) ** 2 / float(window @ window)
-        bins = np.arange(density.size) * (n - 1) / n  # in units of 1/duration
-        cycles = self.frequency * duration
-        nearest = np.clip(np.round(bins / cycles), 0, max(self.orders))
-        free = (np.abs(bins - nearest * cycles) > 2.0) & (bins < 0.5 * n - 1.0)
-        if int(free.sum()) < 8:
-            self.white = self.total
+        self.total = float(self.residual @ self.residual) / max(n - self.size, 1)
+        cycles, bins = self._cycles, n // 2 + 1
+        # Beyond the last harmonic all bins are free: so many are enough.
+        count = min(int(np.ceil(max(self.orders) * cycles)) + _NEAREST + _BESIDE, bins)
+        free = self._free(count)
+        self.few = int(free.sum()) < _FEWEST
+        if self.few:
             self.local = {k: self.total for k in (0, *self.orders)}
             return
-        positions, levels = bins[free], density[free]
-        self.white = float(np.median(levels) / np.log(2.0))
+        lowest = lowest_lines(n, count)
+        density = self._density(lowest.of) if lowest.block else self._whole[:count]
+        positions, levels = self._bins(count)[free], density[free]
         self.local = {}
         for k in (0, *self.orders):
             at = int(np.searchsorted(positions, k * cycles))
@@ -251,6 +155,36 @@ class Solution:
             distance = np.abs(positions[beside] - k * cycles)
             near = np.argsort(distance, kind="stable")[:_NEAREST]
             self.local[k] = float(np.median(levels[beside][near]) / np.log(2.0))
+
+    @property
+    def white(self) -> float:
+        """The noise's median density, as a white variance."""
+        if self.few:
+            return self.total
+        return float(np.median(self._whole[self._free(self._whole.size)]) / np.log(2.0))
+
+    @property
+    def _cycles(self) -> float:
+        return self.frequency * float(self.tau[-1] - self.tau[0])
+
+    def _bins(self, count: int) -> Array:
+        """Return the lowest frequencies, in units of 1/duration."""
+        return np.asarray(np.arange(count) * (self.z.size - 1) / self.z.size)
+
+    def _free(self, count: int) -> NDArray[np.bool_]:
+        """Return which of the lowest bins are clear of harmonics."""
+        bins, cycles = self._bins(count), self._cycles
+        nearest = np.clip(np.round(bins / cycles), 0, max(self.orders))
+        clear = np.abs(bins - nearest * cycles) > 2.0
+        return np.asarray(clear & (bins < 0.5 * self.z.size - 1.0))
+
+    @cached_property
+    def _whole(self) -> Array:
+        return self._density(np.fft.rfft)
+
+    def _density(self, spectrum: Callable[[Array], ComplexArray]) -> Array:
+        window = hann_window(self.z.size)
+        return np.asarray(np.abs(spectrum(self.residual * window)) ** 2 / float(window @ window))
 
     def significant(self) -> tuple[tuple[int, ...], bool]:
         """Return the harmonics that stand out of the noise, and whether the trend does."""

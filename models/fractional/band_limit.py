@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from models.checks import number
 from models.fractional.continuation import continue_record, end_fit
+from models.fractional.lowest_lines import lowest_lines
 from models.fractional.orders import Array, checked_orders, checked_record
 from models.fractional.spectral import TRANSITION, harmonic_factors, low_pass_gain
 from models.fractional.window import kaiser_window
@@ -158,8 +159,8 @@ def band_limited(
     )[:, ::-1]
     frequency = scipy.fft.rfftfreq(length, step)
     frequency = frequency[: np.searchsorted(frequency, TRANSITION * limit) + 1]
-    # Beyond them nothing passes.
-    spectrum = scipy.fft.rfft(extended, axis=-1)[:, : frequency.size].copy()
+    passing = lowest_lines(length, frequency.size)  # beyond them nothing passes
+    spectrum = passing.of(extended)
     shape = values.shape
 
     def differentiate(orders: ArrayLike) -> Array:
@@ -168,7 +169,7 @@ def band_limited(
         factors = factors * low_pass_gain(frequency, limit)
         out = np.empty((alpha.size, spectrum.shape[0], samples))
         for k in range(alpha.size):
-            out[k] = scipy.fft.irfft(factors[k] * spectrum, n=length, axis=-1)[:, :samples]
+            out[k] = passing.series(factors[k] * spectrum, samples)
             if alpha[k] == 0.0:
                 out[k] += level
         return out.reshape(alpha.size, *shape)
