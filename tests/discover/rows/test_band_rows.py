@@ -86,3 +86,13 @@ def test_what_no_term_has_holds_any_smooth_response_and_static_law(rows):
         columns = (rows.remainder / rows.size).T
         left = wanted - columns @ np.linalg.lstsq(columns, wanted)[0]
         assert np.linalg.norm(left) < 0.3 * np.linalg.norm(wanted), name
+
+
+@pytest.mark.parametrize(("i", "j"), [(k, n - k) for n in (2, 3) for k in range(n + 1)])
+def test_what_no_term_has_holds_products_of_displacement_and_velocity(rows, i, j):
+    motion = rows.motion
+    x = motion.displacement - motion.displacement.mean()
+    wanted = rows.of_motion(x**i * motion.velocity**j) / rows.size
+    columns = (rows.remainder / rows.size).T
+    left = wanted - columns @ np.linalg.lstsq(columns, wanted)[0]
+    assert np.linalg.norm(left) < 1e-6 * np.linalg.norm(wanted)
