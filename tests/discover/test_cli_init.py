@@ -369,6 +369,8 @@ def test_a_counter_of_samples_is_no_time(here: Path, capsys: pytest.CaptureFixtu
         ("Time [s],Velocity [mm/s],Force [N]", TIME,
          "no column for displacement among Time [s], Velocity [mm/s], Force [N]; --column"
          " displacement=HEADER names it; velocity or acceleration alone will not do"),
+        ("Time [s],LVDT [mm],Oil [degC]", TIME,
+         "no column for force among Time [s], LVDT [mm], Oil [degC]; --column force=HEADER names"),
         ("Time [s],LVDT [V],Load [kN]", TIME,
          "LVDT [V] has the unit 'V': if it is the displacement, --column 'displacement=LVDT [V]'"
          " --unit 'displacement=5 mm' say so, and what one of it is"),

@@ -69,6 +69,17 @@ def test_the_same_records_from_files_and_from_memory_are_the_same(tmp_path):
     np.testing.assert_allclose(made.displacement, read.displacement, rtol=1e-12, atol=1e-17)
 
 
+def test_the_content_s_hash_is_of_what_is_read_however_it_is_put():
+    one = discover.Campaign.from_frames({"a": table()}, columns=NAMES, units=UNITS)
+    turned = [dict(reversed(given.items())) for given in (NAMES, UNITS)]
+    other = discover.Campaign.from_frames({"a": table()}, columns=turned[0], units=turned[1])
+    assert one.content_hash == other.content_hash
+    coarser = discover.Campaign.from_frames(
+        {"a": {name: values[::2] for name, values in table().items()}}, columns=NAMES, units=UNITS
+    )
+    assert coarser.content_hash != one.content_hash
+
+
 def test_headers_carry_units_and_time_stamps_count_in_seconds():
     columns = table()
     frame = pd.DataFrame({

@@ -17,6 +17,7 @@ from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
 from discover.readers import read_campaign
+from discover.readers.lvm import open_lvm
 from discover.records import Campaign
 from models.checks import InputError
 from tests.discover.readers import instruments
@@ -291,6 +292,17 @@ def test_labview_files(tmp_path: Path, style: str, decimal: str) -> None:
     for name in ("a.lvm", "a.txt"):
         (tmp_path / name).write_text(_lvm(style, 1.0, decimal=decimal), newline="\r\n")
         _check(_campaign(tmp_path, NAMED + f'[[records]]\nfile = "{name}"\n'), 1.0, rtol=2e-4)
+
+
+@pytest.mark.parametrize("style", ["No", "One", "Multi"])
+def test_labview_channels_have_the_units_that_are_stated(style: str) -> None:
+    text = _lvm(style, 1.0)
+    timed = int(style != "No")
+    for force, stated in (("kN", {timed: "mm", 1 + timed: "kN"}), ("", {timed: "mm"})):
+        (source,) = open_lvm(text.replace("\tkN\t", f"\t{force}\t").encode(), "a.lvm").parts
+        assert source.headers[timed:] == ("Weg", "Kraft")
+        assert source.units == {**({0: "s"} if timed else {}), **stated}
+        assert source.step == (None if timed else 0.005)
 
 
 def test_labview_segments_are_tests_and_a_library_reads_the_same(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from discover.motion_fit import observe
-from discover.rows import RecordForces, record_rows
+from discover.rows import RecordForces, force_rows, record_rows
 from discover.rows.columns import Behind, force_columns
 from models.constitutive import FittedTerm, ForceModel
 from tests.discover.gap_data import device, record
@@ -31,6 +31,23 @@ def test_a_column_passes_a_gain_as_a_small_force_does(rows):
     (found,) = behind(rows, FittedTerm("viscous-damping", 1.0))
     (plain,) = force_columns(rows, [FittedTerm("viscous-damping", 1.0)])
     assert np.linalg.norm(found) > 1.2 * np.linalg.norm(plain)
+
+
+def test_a_change_is_the_slope_of_the_whole_as_it_grows(rows):
+    # Central differences in the gain, beside a column of a force and in any order.
+    gain, damper = FittedTerm("sensor-gain", 2e-3, GAIN), FittedTerm("viscous-damping", 5.0)
+    law = (FittedTerm("inertia", 120.0), FittedTerm("viscous-damping", 800.0))
+    ends = [
+        force_rows(rows, ForceModel((*law, FittedTerm("sensor-gain", 1e-3 + d, GAIN))))
+        for d in (1e-6, -1e-6)
+    ]
+    slope = 2e-3 * (ends[0] - ends[1]) / 2e-6
+    (alone,) = behind(rows, gain)
+    np.testing.assert_allclose(alone, slope, atol=5e-3 * np.abs(slope).max())
+    for terms, place in (((damper, gain), 1), ((gain, damper), 0)):
+        found = behind(rows, *terms)
+        np.testing.assert_array_equal(found[place], alone)
+        np.testing.assert_array_equal(found[1 - place], behind(rows, damper)[0])
 
 
 def test_a_change_too_great_to_have_a_square_is_no_column(rows):

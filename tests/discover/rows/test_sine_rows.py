@@ -146,6 +146,7 @@ def test_a_coarser_cycle_weighs_the_same_model():
         assert np.linalg.norm(fine - coarse) < 0.01 * np.linalg.norm(fine), name
     assert 4 * rows.coarse.cycle.displacement.size == rows.cycle.displacement.size
 
+
 @pytest.mark.parametrize("frequency", [1.0, 2.0, 2.5, 4.0])
 def test_cells_of_a_test_whose_cycle_is_whole_samples_have_the_motion_of_their_times(frequency):
     """Mean times of cells then lie on the sampling's grid, in no order."""
@@ -158,3 +159,51 @@ def test_cells_of_a_test_whose_cycle_is_whole_samples_have_the_motion_of_their_t
     assert rows.motion.time.size < time.size
     expected = 8e-3 * np.sin(omega * rows.motion.time)
     np.testing.assert_allclose(rows.motion.displacement, expected, atol=1e-6)
+
+
+def known_to(frequency, rate, harmonic):
+    """Return a harmonic's size in its two rows over the fundamental's: what is known of both."""
+    time = np.arange(int(12 * rate / frequency)) / rate
+    omega = 2.0 * np.pi * frequency
+    x = AMPLITUDE * np.sin(omega * time)
+    force = 800.0 * AMPLITUDE * omega * np.cos(omega * time)
+    force = force + 0.02 * np.std(force) * np.random.default_rng(5).standard_normal(time.size)
+    rows = record_rows(observe(Record("a.csv", time, force, x, frequency=frequency)))
+    pair = rows.size[2 * harmonic - 1 : 2 * harmonic + 1]
+    assert pair[0] == pytest.approx(pair[1], rel=1e-6)
+    return pair[0] / rows.size[1]
+
+
+@pytest.mark.parametrize(
+    ("frequency", "rate", "harmonic", "hums"),
+    [
+        (10.0, 1000.0, 5, True),  # 50 Hz
+        (10.0, 1000.0, 6, True),  # 60 Hz
+        (10.0, 1000.0, 4, False),
+        (10.0, 1000.0, 7, False),
+        (10.0, 130.0, 3, True),  # 100 Hz sampled at 130 Hz looks like 30 Hz
+        (10.0, 130.0, 4, False),
+        (9.3, 1000.0, 5, False),
+        (50.0, 5000.0, 1, False),  # a test at the mains' own frequency
+        (25.0, 2500.0, 2, False),
+        (25.0, 2500.0, 4, True),
+    ],
+)
+def test_a_harmonic_on_a_multiple_of_the_mains_says_little(frequency, rate, harmonic, hums):
+    ratio = known_to(frequency, rate, harmonic)
+    assert ratio < 0.1 if hums else 0.5 < ratio < 2.0
+
+
+def test_what_no_term_has_is_as_large_as_the_force_and_falls_with_harmonics():
+    rows = record_rows(observed(exact))
+    squares = (rows.remainder / rows.size) ** 2
+    assert np.sum(squares) == pytest.approx(1.0, rel=1e-9)
+    mean, *harmonics = squares.sum(axis=0)[:13]
+    sizes = np.array(harmonics).reshape(6, 2).sum(axis=1)
+    np.testing.assert_allclose(sizes / sizes[0], np.arange(1.0, 7.0) ** -4, rtol=1e-9)
+    assert not np.any(squares[:, 13:])
+    # In the motion's phase: a spring's and a damper's first harmonics are one function each.
+    for name in ("stiffness", "viscous-damping"):
+        own = force_rows(rows, ForceModel((FittedTerm(name, 1.0),)))
+        parts = np.abs(rows.remainder @ own) / np.linalg.norm(own)
+        assert np.sort(parts)[-2] < 1e-3 * parts.max()

@@ -7,11 +7,13 @@ from models.fractional import (
     derivative,
     fractional_derivative,
     harmonic_factors,
+    low_pass,
     noise_cutoff,
     spectral_derivative,
     stream_derivative,
 )
 from models.fractional.convolution import SpectrumCache
+from models.fractional.estimate import truncation_error
 
 X = np.sin(0.1 * np.arange(100))
 
@@ -32,6 +34,9 @@ X = np.sin(0.1 * np.arange(100))
         (lambda: derivative(["a", "b"], 0.5, 0.1), "x must be numeric"),
         (lambda: derivative(X[:8], 0.5, 0.1, kind="weyl", scheme="harmonics"), "one and a half"),
         (lambda: band_limited_derivative(X, 0.5, 0.1, cutoff=6.0), "cutoff must be .* <= 5"),
+        (lambda: band_limited_derivative(X, 0.5, 0.1, cutoff=0.0), "cutoff must be .* > 0"),
+        (lambda: low_pass(X, 0.1, cutoff=1.0, edge_noise=0.0), "edge_noise must be .* > 0"),
+        (lambda: low_pass(X[:3], 0.1, cutoff=1.0), "at least 4 samples"),
         (lambda: noise_cutoff(X[:10], 0.1), "at least 16 samples"),
         (lambda: spectral_derivative(X, 0.5, 0.1, cutoff=0.0), "cutoff must be"),
         (lambda: harmonic_factors(3.0, 1.0), "order must be"),
@@ -62,6 +67,17 @@ def test_error_estimate_is_near_the_error(scheme):
     exact = 3.323350970447843 / 2.0 * t**2
     error = np.sqrt(np.mean((result.values - exact) ** 2) / np.mean(exact**2))
     assert error / 5.0 < result.error < 5.0 * error
+
+
+def test_records_too_short_to_thin_have_no_truncation_to_show():
+    def slope(x, dt):
+        return np.gradient(x, dt, axis=-1)[None]
+
+    for count, shown in ((63, False), (64, True)):
+        x = np.sin(0.1 * np.arange(count))[None]
+        found = truncation_error(slope, x, 0.1, slope(x, 0.1), 2)
+        assert found.shape == (1,)
+        assert bool(found[0] > 0.0) is shown
 
 
 def test_cache_drops_the_longest_unused():

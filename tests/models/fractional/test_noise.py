@@ -11,6 +11,7 @@ from models.fractional import (
     noise_cutoff,
 )
 from models.fractional.noise import roughness
+from models.fractional.quadrature import noise_gains
 from tests.models.fractional import oracles
 
 DT = 1e-3
@@ -58,6 +59,20 @@ def test_noise_level():
     assert roughness(np.sin(OMEGA * t)).noise < 1e-14
     single = np.sin(OMEGA * t).astype(np.float32).astype(float)
     assert 1e-9 < roughness(single).noise < 6e-8
+
+
+@pytest.mark.parametrize(("scheme", "steps"), [("gl", 1), ("bdf2", 2), ("bdf4", 4), ("bdf6", 6)])
+def test_noise_comes_through_as_a_single_sample_does(scheme, steps):
+    # White noise is samples of chance size: its rms grows by the norm of what one of them makes.
+    orders = [0.0, 0.3, 0.5, 1.0, 1.5, 1.9, 2.0]
+    one = np.zeros(4000)
+    one[100] = 1.0
+    made = np.linalg.norm(derivative(one, orders, 1.0, scheme=scheme)[:, :164], axis=1)
+    gains = noise_gains(np.array(orders), 1)[:, steps - 1]
+    np.testing.assert_allclose(gains, made, rtol=1e-6)
+    # Every second sample: each whole difference falls by the stride it is taken over.
+    halves = noise_gains(np.array([0.0, 1.0, 2.0]), 2)[:, steps - 1]
+    np.testing.assert_allclose(halves * [1.0, 2.0, 4.0], gains[[0, 3, 6]], rtol=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(5))

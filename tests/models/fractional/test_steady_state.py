@@ -63,6 +63,58 @@ def test_caputo_goes_over_to_the_steady_state_as_its_transient_decays():
     np.testing.assert_allclose(apart[late], -omega / np.sqrt(np.pi * t[late]), rtol=1e-3)
 
 
+def lines(count, dt, cycles):
+    """Lines of equal size at so many cycles in the record, ready for `harmonic_rule`."""
+    omegas = 2 * np.pi * np.asarray(cycles) / (count * dt)
+    return [(1.0, omega, 0.7 * k * k) for k, omega in enumerate(omegas)]
+
+
+@pytest.mark.parametrize("noise", [1e-3, 1e-4])
+@pytest.mark.parametrize("order", [0.5, 1.5])
+@pytest.mark.parametrize(
+    ("cycles", "asked", "used", "low_passed"),
+    [
+        ([10.3], "auto", "harmonics", False),
+        ([10.3, 30.9], "auto", "harmonics", False),
+        (np.linspace(3.3, 25.7, 12), "auto", "band-limited", True),
+        (np.arange(3, 25, 2), "auto", "spectral", True),
+        (np.arange(3, 25, 3), "spectral", "spectral", False),
+    ],
+)
+def test_error_estimate_is_near_the_error(cycles, asked, used, low_passed, order, noise):
+    t = 1e-3 * np.arange(4000)
+    parts = lines(4000, 1e-3, cycles)
+    x = harmonic_rule(parts, 0.0, t)
+    x = x + noise * np.std(x) * np.random.default_rng(2).standard_normal(x.size)
+    result = fractional_derivative(x, order, 1e-3, kind="weyl", scheme=asked)
+    assert (result.scheme, result.cutoff is not None) == (used, low_passed)
+    error = oracles.relative_rms(result.values, harmonic_rule(parts, order, t))
+    assert error / 5.0 < result.error < 5.0 * error
+
+
+def test_clean_periods_keep_every_line():
+    # More lines than a fit of harmonics holds: no low-pass may stand in for the spectrum.
+    t = 1e-3 * np.arange(4000)
+    parts = lines(4000, 1e-3, np.arange(7, 120, 5))
+    result = fractional_derivative(harmonic_rule(parts, 0.0, t), 0.5, 1e-3, kind="weyl")
+    assert (result.scheme, result.cutoff) == ("spectral", None)
+    assert oracles.relative_rms(result.values, harmonic_rule(parts, 0.5, t)) < 1e-10
+    assert result.error < 1e-9
+
+
+@pytest.mark.parametrize("order", [0.0, 0.5, 1.0])
+def test_low_pass_of_whole_periods(order):
+    # All passes up to the cut-off, half of it midway (by symmetry), nothing from twice it on.
+    dt, cutoff = 1e-3, 10.0
+    t = dt * np.arange(2000)
+    gains = [(4.0, 1.0), (10.0, 1.0), (15.0, 0.5), (20.0, 0.0), (45.0, 0.0), (500.0, 0.0)]
+    for frequency, gain in gains:
+        part = [(1.0, 2 * np.pi * frequency, 0.3)]
+        found = spectral_derivative(harmonic_rule(part, 0.0, t), [order], dt, cutoff=cutoff)[0]
+        exact = gain * harmonic_rule(part, order, t)
+        np.testing.assert_allclose(found, exact, atol=1e-10 * (2 * np.pi * frequency) ** order)
+
+
 def test_frequency_and_harmonics_in_noise():
     n = np.arange(5000)
     rng = np.random.default_rng(4)
