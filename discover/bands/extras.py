@@ -123,18 +123,22 @@ def with_one_more(way: Found, *, least: float = -np.inf) -> Found | Step:
     step = _that_predict(now, grown(way.device.assessor, now, _open(way), least=least))
     while step.best.id and step.best.assessed is not None:
         more = _joined(way, step)
-        more = _settled(more, step.best.id)
+        # What was chosen beside other bands is chosen again beside these.
+        more = _settled(more, step.best.id if _cores(more) == _cores(way) else "")
         if any(j.id == step.best.id for j in more.joined):
             return more
         step = _that_predict(now, step.without([step.best.id]))
     return step
 
 
+def _cores(way: Found) -> list[str]:
+    return [way.variants[v].core for v in way.banded.variants]
+
+
 def _open(way: Found) -> list[str]:
     """Return the ids of what may join; of structures' terms what each band's may have beside."""
     there = {j.id for j in way.joined}
-    names = {way.variants[v].core for v in way.banded.variants}
-    held = [set(c.beside) for c in way.device.cores if c.name in names]
+    held = [set(c.beside) for c in way.device.cores if c.name in _cores(way)]
     return [
         i for i in way.device.extras
         if i not in there and (i not in TELLING or all(i in beside for beside in held))
@@ -192,7 +196,7 @@ def _needed(way: Found) -> Found:
 
 
 def _settled(way: Found, newest: str) -> Found:
-    """Return the bands without what has joined and need not, and the rest chosen again.
+    """Return the bands without what has joined and need not, and all but the newest chosen again.
 
     Beside what joined later: an offset of every test's own may have joined for what another term
     explains since, and a sensor's drift where an offset is enough now.

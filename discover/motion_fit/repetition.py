@@ -30,6 +30,7 @@ _HARMONICS = 31  # lowest of the force, taken out before cycles are compared
 _RESOLVED = 0.12  # of the sampling rate: what is slower is smooth over one sample
 _SLOW = 3  # orders of slow change at most
 _CYCLES_EACH = 3.0  # for every order of slow change
+_ROUNDED = 1e-6  # of the distance between lines, that a frequency may be off
 _BESIDE = 2.0  # harmonics beyond those that change, that see it
 _MANY_CYCLES = 20.0  # of which slow changes take next to nothing
 _SAME = 1e-9  # of the greatest singular value: no change of its own
@@ -104,7 +105,9 @@ def unrepeated(time: Array, force: Array, frequency: float, step: float) -> Unre
     width = float(frequencies[1])
     gain = _response(same, time, taper[at] * kept, width, frequencies.size)
     if cycles < _MANY_CYCLES:
-        bins = np.searchsorted(frequencies, (_changing(time.size, cycles) + _BESIDE) * frequency)
+        # The line at the very end is not among them, whichever way its frequency is rounded.
+        end = (_changing(time.size, cycles) + _BESIDE) * frequency - _ROUNDED * width
+        bins = np.searchsorted(frequencies, end)
         gain[:bins] *= _left_by(changes, same, at, kept, int(bins))
     gain = convolve1d(gain, _SPREAD, mode="nearest")
     gain *= float(taper[at] @ kept) / float(np.sum(taper))
