@@ -58,9 +58,9 @@ def sprung(omega, amplitude):
     return steps, x, stiffness * (x - run.y[0]) + loss * (v - run.y[1])
 
 
-def one_band(cycle):
+def one_band(cycle, seed=3):
     """Return the best structure of all tests together, nothing else beside it."""
-    rng, records = np.random.default_rng(3), []
+    rng, records = np.random.default_rng(seed), []
     for frequency, amplitude in PLAN:
         time, x, force = cycle(2.0 * np.pi * frequency, amplitude)
         whole = np.arange(8 * time.size) * time[1]
@@ -93,21 +93,17 @@ def test_a_delay_is_seen_beside_friction_that_deflects(late):
     assert delay.coefficient == pytest.approx(late, rel=0.02)
 
 
-@pytest.fixture(scope="module")
-def yielding():
-    """Return what joins a mass behind a spring, whose friction reverses over a speed."""
-    found = one_band(sprung)
-    step = grown(found.device.assessor, found.assessed, ("series-compliance", "cavitation"))
-    return step.best.id, {p.fitted.id: p.fitted for p in step.best.assessed.model.terms}
-
-
-def test_a_spring_in_series_is_named_beside_friction_that_reverses_over_a_speed(yielding):
-    assert yielding[0] == "series-compliance"
-
-
-@pytest.mark.xfail(strict=True, reason="of 8 draws of noise 5 are fitted so, this one 10 % off")
-def test_a_spring_in_series_is_seen_beside_friction_that_reverses_over_a_speed(yielding):
-    terms = yielding[1]
-    assert terms["coulomb-friction"].term.remembers(terms["coulomb-friction"].shape) == "motion"
-    spring = terms["series-compliance"]
-    assert spring.coefficient == pytest.approx(1.0 / SPRING, rel=0.02)
+def test_a_spring_in_series_is_seen_beside_friction_that_reverses_over_a_speed():
+    """In most draws of noise: in some friction deflects, and the spring is a tenth off."""
+    right = 0
+    for seed in (3, 4, 5):
+        found = one_band(sprung, seed)
+        step = grown(found.device.assessor, found.assessed, ("series-compliance", "cavitation"))
+        assert step.best.id == "series-compliance"
+        terms = {p.fitted.id: p.fitted for p in step.best.assessed.model.terms}
+        friction, spring = (terms[i] for i in ("coulomb-friction", "series-compliance"))
+        right += (
+            friction.term.remembers(friction.shape) == "motion"
+            and spring.coefficient == pytest.approx(1.0 / SPRING, rel=0.02)
+        )
+    assert right >= 2
