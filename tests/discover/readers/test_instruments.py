@@ -316,6 +316,13 @@ def test_labview_segments_are_tests_and_a_library_reads_the_same(tmp_path: Path)
         np.testing.assert_allclose(record.force, 1e3 * data[:, 2], rtol=1e-12, atol=1e-12)
 
 
+def test_a_labview_row_that_lacks_its_last_field_is_told_with_its_line(tmp_path: Path) -> None:
+    rows = _lvm("One", 1.0).splitlines(keepends=True)
+    rows[400] = rows[400].rpartition("\t")[0] + "\n"
+    (tmp_path / "a.lvm").write_text("".join(rows))
+    with pytest.raises(InputError, match=r"a\.lvm line 401: Kraft must be a finite number"):
+        _campaign(tmp_path, NAMED + '[[records]]\nfile = "a.lvm"\n')
+
 
 def test_labview_segments_that_go_on_in_time_are_one_test(tmp_path: Path) -> None:
     """LabVIEW writes a segment each time that it appends to the file."""
