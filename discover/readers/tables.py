@@ -9,7 +9,7 @@ from typing import Any
 
 from discover.readers.columns import QUANTITIES
 from discover.readers.entries import Entry
-from discover.readers.excel import cell_range
+from discover.readers.formats.excel import cell_range
 from discover.readers.units import check_unit, quantity
 from discover.records import CarriedSystem, RigLimits
 from models.checks import InputError, nearest, number, one_of, shown

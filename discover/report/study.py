@@ -13,6 +13,7 @@ from discover.plots.probabilities import probability_bars
 from discover.plots.record_map import record_map
 from discover.report.environment import render
 from discover.report.files import coefficients_csv, page_files, table_csv
+from discover.report.record_columns import COLUMNS, shown_columns
 from discover.report.records import only_drawn, picture, record_figures, record_section
 from discover.study.extras_words import extras
 from discover.study.verdict import (
@@ -23,11 +24,6 @@ from discover.study.verdict import (
     verdict_lines,
 )
 from discover.words import coordinate_name, named_line, odds, remainder_text, significant
-
-_RECORD_COLUMNS = (
-    "file", "kind", "held_out", "frequency", "amplitude", "band", "structure", "dean_paper",
-    "dean_standard", "error_percent", "relative_error_percent", "noise_percent",
-)  # fmt: skip
 
 
 def study_files(
@@ -53,15 +49,11 @@ def study_files(
     figures = study_figures(document, data)
     page = study_report(document, data, figures, command=command)
     bands = [(str(i), band["terms"]) for i, band in enumerate(document["bands"], start=1)]
-    records = [
-        {name: getattr(r, name) for name in _RECORD_COLUMNS}
-        | {"band": None if r.band is None else r.band + 1}
-        for r in data.records
-    ]
+    records = [{column.name: column.value(r) for column in COLUMNS} for r in data.records]
     return {
         **page_files(page, figures, formats),
         "coefficients.csv": coefficients_csv(bands),
-        "records.csv": table_csv(records, _RECORD_COLUMNS),
+        "records.csv": table_csv(records, [column.name for column in COLUMNS]),
     }
 
 
@@ -133,8 +125,7 @@ def study_report(
         held_out=sum(r.held_out for r in data.records),
         coordinate=coordinate_name(document),
         all_terms=[t for band in document["bands"] for t in band["terms"]],
-        sines=any(r.frequency is not None for r in data.records),
-        dean=any(r.dean_paper is not None for r in data.records),
+        record_columns=shown_columns(data.records),
         baselines=data.baselines,
         check={**check, **document["dean_check"]},
         has_fluid=document["dean_check"]["verdict"] != "no-geometry",

@@ -528,7 +528,7 @@ def test_one_bad_file_does_not_spoil_the_rest(here: Path) -> None:
     [
         (["init"], "FOLDER|FILE"),
         (["init", "nowhere"], "nowhere must be a folder or a file"),
-        (["init", "."], ".: files must be there that can be read (.csv, .tsv,"),
+        (["init", "."], ".: files must be there that can be read (.asc, .csv,"),
         (["init", ".", "--device", "device-13"], "--device: device must be one of device-12"),
         (["init", ".", "--unit", "force"], "--unit: value must be QUANTITY=UNIT, got 'force'"),
         (["init", ".", "--unit", "force=mm"], "--unit: force must be in a unit of force"),

@@ -18,7 +18,6 @@ CONTRACT = {
     "hysteresis", "position-dependent-friction", "thermal-drift", "sensor-gain", "sensor-drift",
     "sensor-clipping",
 }
-ADDED = {"quadratic-stiffness", "relaxation", "saturating-damping", "unsteady-friction"}
 
 
 def force(*terms, motion=MOTION):
@@ -29,8 +28,8 @@ def line(values, harmonic=1):
     return np.fft.rfft(values)[harmonic] / values.size
 
 
-def test_the_catalogue_is_the_contracts():
-    assert set(TERMS) == CONTRACT | ADDED
+def test_the_catalogue_holds_the_contracts():
+    assert set(TERMS) >= CONTRACT
     for term in TERMS.values():
         assert (term.column is None) != (term.transform is None)
         assert set(term.mistaken_for) <= set(TERMS) - {term.id}

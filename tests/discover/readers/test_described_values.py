@@ -77,7 +77,7 @@ def test_a_fill_value_is_no_value(tmp_path: Path) -> None:
 def test_counts_that_stay_in_their_file_stand_for_values(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("discover.readers.hdf5.LONG", 100)
+    monkeypatch.setattr("discover.readers.formats.hdf5.LONG", 100)
     assert source_module.LONG > TIME.size
     netcdf(tmp_path / "a.h5")
     check(read(tmp_path, "a.h5"))

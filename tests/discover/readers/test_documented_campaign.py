@@ -14,6 +14,7 @@ from scipy.io import savemat
 from discover.readers import read_campaign
 from discover.readers.campaign import CAMPAIGN_FILE
 from discover.readers.columns import QUANTITIES
+from discover.readers.formats import FORMATS
 from models.checks import InputError
 from models.device import Device
 
@@ -121,3 +122,12 @@ def test_every_key_that_the_reader_knows_is_in_it(folder: Path, table: str, plac
 def test_every_column_is_in_it() -> None:
     table = tomllib.loads(block())
     assert set(table["columns"]) == set(table["units"]) == set(QUANTITIES)
+
+
+def test_the_table_of_files_names_what_can_be_read() -> None:
+    _, section = PAGE.read_text(encoding="utf-8").split("## Files\n")
+    table, _ = section.split("\n\n**Text.**")
+    firsts = [row.split("|")[1] for row in table.splitlines() if row.startswith("| `")]
+    named = re.findall(r"`(\.\w+)`", " ".join(firsts))
+    read = [suffix for one in FORMATS for suffix in one.suffixes]
+    assert sorted(set(named)) == sorted(read)

@@ -10,9 +10,9 @@ import pyarrow.parquet as parquet
 import pytest
 
 from discover.motion_fit import observe
-from discover.readers import hdf5 as hdf5_module
 from discover.readers import long_record, long_text, read_campaign, source
-from discover.readers import parquet as parquet_module
+from discover.readers.formats import hdf5 as hdf5_module
+from discover.readers.formats import parquet as parquet_module
 from models.checks import InputError
 
 RATE = 1000.0

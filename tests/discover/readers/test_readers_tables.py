@@ -335,7 +335,7 @@ def test_single_precision_that_holds_no_clock_is_refused(tmp_path: Path, origin:
          "a.mat: content must be an HDF5 file"),
         ("mat", _mat({"note": "x"}), "content must be numeric vectors, got none"),
         ("xlsx", b"PK", "a.xlsx: content must be an Excel workbook, got File is not a zip file"),
-        ("docx", b"PK", "must be one of .csv, .tsv, .txt, .* .mat, .npz, .* got .docx"),
+        ("docx", b"PK", "must be one of .asc, .csv, .dat, .* .mat, .* .npz, .* got .docx"),
         ("", b"x", "got no suffix"),
     ],
 )  # fmt: skip

@@ -14,6 +14,7 @@ import pyarrow.parquet as parquet
 
 from discover.readers.arrow_values import doubles
 from discover.readers.content import content_error
+from discover.readers.file_format import FileFormat
 from discover.readers.source import PIECE, Book, Source, single
 from models.checks import Array, InputError
 
@@ -157,3 +158,6 @@ def _counted_from(counts: Any, first: int) -> Any:
 
 def _doubles(column: Any) -> Array:
     return doubles(column.cast(pa.float64(), safe=False))
+
+
+FORMAT = FileFormat((".parquet",), open_parquet, open_parquet)

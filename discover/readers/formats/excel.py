@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from discover.readers.content import check_unpacked, content_error, optional_package
+from discover.readers.file_format import FileFormat
 from discover.readers.layout import Layout, Rows, above_text, find_tables
 from discover.readers.notation import Notation, check_told, notations, thousands_note
 from discover.readers.numerals import clock_seconds, value
@@ -168,3 +169,6 @@ def _number(cell: Any, written: Notation) -> float:
         return float(cell)
     found = value(_text(cell), written.decimal, written.thousands)
     return float("nan") if found is None else found
+
+
+FORMAT = FileFormat((".xlsx", ".xlsm"), open_excel)

@@ -1,57 +1,38 @@
-"""Which files can be read, by the end of their name."""
+"""Which files can be read, by the end of their name: one file here for each format.
+
+To add one, write a file here that defines ``FORMAT``.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from pathlib import Path, PurePath
+from pkgutil import iter_modules
 
-from discover.readers.excel import open_excel
-from discover.readers.hdf5 import open_hdf5
-from discover.readers.long_text import open_long_text
-from discover.readers.lvm import is_lvm, open_lvm
-from discover.readers.matlab import open_mat
-from discover.readers.mdf import open_mdf
-from discover.readers.numpy_archive import open_npz
-from discover.readers.parquet import open_parquet
+from discover.readers.file_format import FileFormat
 from discover.readers.source import Book
-from discover.readers.tdms import open_tdms
-from discover.readers.text_table import open_text
-from discover.readers.uff import open_uff
 from models.checks import InputError
 
-
-def _open_any_text(data: bytes, name: str) -> Book:
-    return open_lvm(data, name) if is_lvm(data) else open_text(data, name)
-
+FORMATS: tuple[FileFormat, ...] = tuple(
+    import_module(f"{__name__}.{module}").FORMAT
+    for module in sorted(info.name for info in iter_modules(__path__))
+)
+"""All of them, by the names of their files."""
 
 OPENERS: Mapping[str, Callable[[bytes, str], Book]] = {
-    ".csv": _open_any_text,
-    ".tsv": _open_any_text,
-    ".txt": _open_any_text,
-    ".dat": _open_any_text,
-    ".asc": _open_any_text,
-    ".lvm": _open_any_text,
-    ".parquet": open_parquet,
-    ".mat": open_mat,
-    ".npz": open_npz,
-    ".h5": open_hdf5,
-    ".hdf5": open_hdf5,
-    ".xlsx": open_excel,
-    ".xlsm": open_excel,
-    ".tdms": open_tdms,
-    ".uff": open_uff,
-    ".unv": open_uff,
-    ".mf4": open_mdf,
-    ".mdf": open_mdf,
+    suffix: one.opens
+    for suffix, one in sorted(
+        ((suffix, one) for one in FORMATS for suffix in one.suffixes), key=lambda pair: pair[0]
+    )
 }
 """What opens a file, by its suffix in lower case."""
 
 IN_PIECES: Mapping[str, Callable[[Path, str], Book]] = {
-    ".csv": open_long_text,
-    ".tsv": open_long_text,
-    ".parquet": open_parquet,
-    ".h5": open_hdf5,
-    ".hdf5": open_hdf5,
+    suffix: one.in_pieces
+    for one in FORMATS
+    if one.in_pieces is not None
+    for suffix in one.pieces_of or one.suffixes
 }
 """What opens a file of which a piece at a time can be read."""
 

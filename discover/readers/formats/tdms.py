@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from discover.readers.content import content_error, optional_package
+from discover.readers.file_format import FileFormat
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import Book
 from discover.readers.tree import Leaf, tree_book
@@ -87,3 +88,6 @@ def _numbers(properties: Mapping[str, Any]) -> list[tuple[str, float]]:
         for key, value in properties.items()
         if isinstance(value, kept) and not isinstance(value, bool)
     ]
+
+
+FORMAT = FileFormat((".tdms",), open_tdms)

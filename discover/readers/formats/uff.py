@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from discover.readers.content import content_error, optional_package
+from discover.readers.file_format import FileFormat
 from discover.readers.source import Book
 from discover.readers.tree import Leaf, tree_book
 
@@ -80,3 +81,6 @@ def _name(function: Mapping[str, Any], role: str) -> str:
 def _text(function: Mapping[str, Any], key: str) -> str:
     text = str(function.get(key, "")).strip()
     return "" if text.upper() in _EMPTY else text
+
+
+FORMAT = FileFormat((".uff", ".unv"), open_uff)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from discover.readers.content import content_error, optional_package
+from discover.readers.file_format import FileFormat
 from discover.readers.sampling_note import stated_step
 from discover.readers.source import LONG, MOST_VALUES, Book, LongVector
 from discover.readers.tree import Leaf, tree_book
@@ -212,3 +213,6 @@ def _texts(value: Any) -> list[str]:
         own.decode("utf-8", "replace").strip() if isinstance(own, bytes) else str(own).strip()
         for own in listed
     ]
+
+
+FORMAT = FileFormat((".h5", ".hdf5"), open_hdf5, open_hdf5)

@@ -7,7 +7,8 @@ import io
 from scipy.io import loadmat
 
 from discover.readers.content import content_error
-from discover.readers.hdf5 import is_hdf5, open_hdf5
+from discover.readers.file_format import FileFormat
+from discover.readers.formats.hdf5 import is_hdf5, open_hdf5
 from discover.readers.mat_guard import damage
 from discover.readers.source import Book
 from discover.readers.tree import plain_leaves, tree_book
@@ -34,3 +35,6 @@ def open_mat(data: bytes, name: str) -> Book:
         raise content_error("a MATLAB file", error, name) from None
     kept = {key: value for key, value in content.items() if not key.startswith("__")}
     return tree_book(name, list(plain_leaves(kept)), joint=".")
+
+
+FORMAT = FileFormat((".mat",), open_mat)

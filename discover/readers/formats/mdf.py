@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from discover.readers.content import content_error, optional_package
+from discover.readers.file_format import FileFormat
 from discover.readers.source import Book
 from discover.readers.tree import Leaf, tree_book
 from models.checks import InputError
@@ -68,3 +69,6 @@ def _leaves(file: Any) -> Iterator[Leaf]:
                 times = signal.timestamps
                 yield Leaf((path, "time"), times, unit="s", role="time")
             yield Leaf((path, signal.name.strip()), signal.samples, unit=signal.unit.strip())
+
+
+FORMAT = FileFormat((".mf4", ".mdf"), open_mdf)

@@ -7,6 +7,7 @@ import io
 import numpy as np
 
 from discover.readers.content import check_unpacked, content_error
+from discover.readers.file_format import FileFormat
 from discover.readers.source import Book
 from discover.readers.tree import plain_leaves, tree_book
 from models.checks import InputError
@@ -33,3 +34,6 @@ def open_npz(data: bytes, name: str) -> Book:
     except Exception as error:  # numpy parses headers as Python: errors of many kinds
         raise content_error("an .npz archive", error, name) from None
     return tree_book(name, list(plain_leaves(arrays)), joint=".")
+
+
+FORMAT = FileFormat((".npz",), open_npz)
