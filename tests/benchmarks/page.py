@@ -39,7 +39,6 @@ _SHOWN = {
     "scale": (r"sine test of", r"[\d,]+ records of"),
     "study": (r"40 records of 20,000 samples", r"search at"),
     "search": (r"16 records of 10,000 samples",),
-    "workers": (r".*",),
 }
 
 
