@@ -12,7 +12,6 @@ from scipy.fft import irfft, next_fast_len, rfft
 from discover.records import Record
 from discover.sine_fit import FEW_CYCLES, SineFit, fit_sine, local_phasors, strongest_line
 from models.checks import Array, InputError
-from models.fractional.window import hann_window
 
 KINDS = ("sine", "periodic", "transient", "trajectory")
 
@@ -179,7 +178,7 @@ def _detrended(x: Array) -> Array:
 def _power(x: Array) -> Array:
     """Return the power spectrum of x, detrended and tapered."""
     padded = next_fast_len(x.size, real=True)
-    return np.asarray(np.abs(rfft(_detrended(x) * hann_window(x.size), padded)) ** 2)
+    return np.asarray(np.abs(rfft(_detrended(x) * np.hanning(x.size), padded)) ** 2)
 
 
 def _line_share(power: Array) -> float:

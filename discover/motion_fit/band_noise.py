@@ -29,7 +29,6 @@ from discover.motion_fit.observation import Lines
 from discover.motion_fit.smooth_response import lines_of, span_of, unexplained
 from models.checks import Array
 from models.fractional.lowest_lines import LowestLines, lowest_lines
-from models.fractional.window import hann_window
 from models.motion import Motion
 
 _PASSES = 3  # of fitting with the noise that the last pass found
@@ -77,7 +76,7 @@ def band_noise(
     if size > _LONG:  # a few samples less make many transforms several times as fast
         inner = slice(inner.start, inner.start + prev_fast_len(size, real=True))
     force = force[inner]
-    taper = hann_window(force.size + 2)[1:-1]
+    taper = np.hanning(force.size + 2)[1:-1]
     scale = np.sqrt(2.0 * step / np.sum(taper**2))
     taper *= scale
     frequencies = np.asarray(np.fft.rfftfreq(force.size, step))[1:]

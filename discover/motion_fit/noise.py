@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from models.checks import Array
-from models.fractional.window import hann_window
 
 _GAPS = 3.0  # between harmonics, to either side of a line
 _OCTAVE = 0.3  # of a line's frequency, to either side of it
@@ -29,7 +28,7 @@ def power_density(residual: Array, step: float) -> tuple[Array, Array]:
     frequencies, density : ndarray, shape (N // 2 + 1,)
         Density in squared units of the signal per Hz.
     """
-    taper = hann_window(residual.size + 2)[1:-1]
+    taper = np.hanning(residual.size + 2)[1:-1]
     spectrum = np.abs(np.fft.rfft(residual * taper)) ** 2
     frequencies = np.asarray(np.fft.rfftfreq(residual.size, step), dtype=np.float64)
     return frequencies, 2.0 * step * spectrum / (taper @ taper)
@@ -81,7 +80,7 @@ def density_between_lines(
         low, high = np.searchsorted(frequencies[clear], (line - width, line + width))
         low = max(min(low, clear.size - 5), 0)
         some = density[clear[low : max(high, low + 5)]]
-        result[index] = median(some) / _median_of_exponentials(some.size)
+        result[index] = float(np.median(some)) / _median_of_exponentials(some.size)
         result[index] *= _median_correction(some.size)
     return result
 
@@ -99,18 +98,3 @@ def _median_of_exponentials(count: int) -> float:
     """Return the expected median of `count` unit exponential variables."""
     odd = count if count % 2 else count - 1
     return float(np.sum(1.0 / np.arange((odd + 1) // 2, odd + 1)))
-
-
-def median(values: Array) -> float:
-    """Return the median of values (N,), as of `numpy.median`, which takes long for a few.
-
-    Examples
-    --------
-    >>> median(np.array([3.0, 1.0, 8.0, 2.0]))
-    2.5
-    """
-    half = values.size // 2
-    if values.size % 2:
-        return float(np.partition(values, half)[half])
-    low, high = np.partition(values, (half - 1, half))[half - 1 : half + 1]
-    return 0.5 * float(low + high)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from discover.motion_fit.noise import median, power_density
+from discover.motion_fit.noise import power_density
 from discover.motion_fit.repetition import Unrepeated, unrepeated
 from discover.sine_fit import harmonic_design
 from models.checks import Array
@@ -126,7 +126,7 @@ def _level(density: Array) -> float:
     too, is left out.
     """
     top = int(np.argmax(density))
-    middle = median(density) / float(np.log(2.0))
+    middle = float(np.median(density)) / float(np.log(2.0))
     if density[top] <= _LINE * middle:
         return float(np.mean(density))
     others = np.delete(density, slice(max(top - 2, 0), top + 3))

@@ -10,7 +10,6 @@ from discover.sine_fit.basis import Basis
 from discover.sine_fit.moments import Moments, moments
 from discover.sine_fit.solution import SineFit, Solution
 from models.checks import Array, InputError, finite_array, number
-from models.fractional.window import hann_window
 
 _ROUNDING = 1e-15  # of a signal's square sum: less is no difference
 FEW_CYCLES = 12.0  # below this many cycles a spectrum's peak is off by its own mirror image
@@ -135,7 +134,7 @@ def _start(tau: Array, z: Array, duration: float) -> float:
     )
     slope = (grid @ even) / (grid @ grid)
     padded = next_fast_len(4 * size, real=True)
-    tapered = (even - even.mean() - slope * grid) * hann_window(size)
+    tapered = (even - even.mean() - slope * grid) * np.hanning(size)
     bin_width = (size - 1) / duration / padded
     start = strongest_line(np.abs(rfft(tapered, padded)) ** 2, bin_width, duration)
     return start if start * duration >= FEW_CYCLES else _scan(tau, z, start, duration)

@@ -15,7 +15,6 @@ from discover.sine_fit.design import ComplexArray
 from discover.sine_fit.moments import Moments
 from models.checks import Array
 from models.fractional.lowest_lines import lowest_lines
-from models.fractional.window import hann_window
 
 _NEAREST = 24  # bins whose median is the noise beside a harmonic
 _BESIDE = 8  # bins beyond those, which a harmonic hides
@@ -183,7 +182,7 @@ class Solution:
         return self._density(np.fft.rfft)
 
     def _density(self, spectrum: Callable[[Array], ComplexArray]) -> Array:
-        window = hann_window(self.z.size)
+        window = np.hanning(self.z.size)
         return np.asarray(np.abs(spectrum(self.residual * window)) ** 2 / float(window @ window))
 
     def significant(self) -> tuple[tuple[int, ...], bool]:

@@ -43,31 +43,14 @@ def _dahl(x: Array, limit: float, holds: Array, *, passes: int) -> Array:
     return result
 
 
-@compiled(cache=True)
-def _followed(steps: Array, kept: Array, *, passes: int) -> Array:
-    """Return Dahl's state where each of steps (N,) keeps a share (N,) of what is not slipped."""
-    result = np.empty(steps.size)
-    state = result[0] = 0.0
-    for again in range(passes):
-        for i in range(0 if again else 1, steps.size):
-            goal = 1.0 if steps[i] > 0.0 else -1.0
-            state = goal + (state - goal) * kept[i]
-            result[i] = state
-    return result
-
-
 def bristle_state(motion: Motion, length: float, holds: Array | None = None) -> Array:
     """Return Dahl's state, in [-1, 1]: the sign of v that follows over a presliding length, m.
 
     What the bristles hold may fall with speed to the shares `holds` (N,), above 0 (LuGre).
     """
-    x, passes = np.ascontiguousarray(motion.displacement), 2 if motion.periodic else 1
-    if holds is not None:
-        return np.asarray(_dahl(x, length, np.maximum(holds, _LEAST_HELD), passes=passes))
-    steps = np.diff(x, prepend=x[-1])
-    kept = np.abs(steps)
-    kept /= -length
-    return np.asarray(_followed(steps, np.exp(kept, out=kept), passes=passes))
+    x = np.ascontiguousarray(motion.displacement)
+    shares = np.ones_like(x) if holds is None else np.maximum(holds, _LEAST_HELD)
+    return np.asarray(_dahl(x, length, shares, passes=2 if motion.periodic else 1))
 
 
 def slider_state(motion: Motion, length: float) -> Array:
@@ -86,7 +69,7 @@ def column(motion: Motion, shape: Shape) -> Array:
     x, limit = np.ascontiguousarray(motion.displacement), shape["yield_displacement"]
     passes = 2 if motion.periodic else 1
     if shape["form"] == DAHL:
-        return bristle_state(motion, limit)
+        return np.asarray(_dahl(x, limit, np.ones_like(x), passes=passes))
     if shape["form"] == IWAN:
         limits = 2.0 * limit * (np.arange(_SLIDERS) + 0.5) / _SLIDERS
         parts = [_stop(x, each, passes=passes) * each for each in limits]
