@@ -41,8 +41,8 @@ def parted(data: bytes, name: str) -> bytes:
     >>> parted(b"t x F\n  0.5 -1.5 10.2\n  1.0-11.5-10.2\n  1.5 11.5110.2\n", "a.dat")
     b't x F\n  0.5 -1.5 10.2\n  1.0 -11.5 -10.2\n  1.5  11.5 110.2\n'
     """
-    last = data[:_SAMPLE].rstrip(b"\n").rpartition(b"\n")[2]
-    if any(mark in last for mark in b",;\t") or not _TOUCHING.search(data):
+    last = data[:_SAMPLE].rstrip(b"\n").rsplit(b"\n", 2)[-2:]  # the very last may be cut
+    if any(mark in line for line in last for mark in b",;\t") or not _TOUCHING.search(data):
         return data
     lines = data.split(b"\n")
     rows = _table_rows(lines)

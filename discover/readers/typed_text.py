@@ -10,9 +10,8 @@ _HEAD = 2**12  # bytes that show the encoding
 _MOST_ZEROS = 0.05  # of the bytes that are a character's own, in UTF-16 of Latin letters
 _MINUS = "−".encode()  # a dash as word processors and spreadsheets write it before a number
 # Swiss and French: an apostrophe, a typographic one, a narrow or a plain blank that does not break.
-_GROUP = re.compile(
-    rb"(?<=\d)(?:'|\xe2\x80\x99|\xe2\x80\xaf|\xc2\xa0|\xa0)(?=\d{3}(?!\d))", re.DOTALL
-)
+_MARKS = (b"'", b"\xe2\x80\x99", b"\xe2\x80\xaf", b"\xc2\xa0", b"\xa0")
+_GROUP = re.compile(rb"(?<=\d)(?:" + b"|".join(_MARKS) + rb")(?=\d{3}(?!\d))", re.DOTALL)
 _NUMBER = re.compile(rb"\d(?:[\d.,]|'|\xe2\x80\x99|\xe2\x80\xaf|\xc2\xa0|\xa0)*")
 _LONGEST = 40  # characters of a number
 
@@ -61,7 +60,8 @@ def without_thousands(data: bytes) -> tuple[bytes, tuple[str, ...]]:
     >>> without_thousands(b"0.5;6'050.25")
     (b'0.5;6050.25', ("thousands separators are taken out: 6'050.25 is read as 6050.25",))
     """
-    first = _GROUP.search(data)
+    # Looking for a mark is far faster than for one between digits.
+    first = _GROUP.search(data) if any(mark in data for mark in _MARKS) else None
     if first is None:
         return data, ()
     line = data[data.rfind(b"\n", 0, first.start()) + 1 : first.end() + _LONGEST]
