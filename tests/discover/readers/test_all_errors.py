@@ -74,7 +74,7 @@ def test_thousands_of_missing_files_are_told_soon(
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 21
     assert "20000 of 20000 records can't be read (19980 more than are listed)" in lines[-1]
-    assert ended - looked < 60.0 * (looked - began)  # of a tenth of the names; 30 to 40 are seen
+    assert ended - looked < 60.0 * (looked - began)  # of a tenth; 31 and over 40 were seen
 
 
 @pytest.mark.parametrize(
