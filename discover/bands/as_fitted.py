@@ -1,7 +1,8 @@
-"""Structures count with what they are when fitted, where their slopes promise more.
+"""Structures count with what they are when fitted, where their linear form promises more.
 
 Between places of their grid, shapes are weighed by slopes. A term of next to no size may have a
 slope as large as another term's force: no shape of it makes that, and a fit leaves what it made.
+Behind a joint, other coefficients move the device otherwise, which no linear form shows.
 """
 
 from __future__ import annotations
@@ -20,24 +21,33 @@ _MORE = 10.0
 
 
 def as_fitted(found: Found) -> Found:
-    """Return the answer with structures that leave but noise weighed as they are when fitted.
+    """Return the answer with structures weighed as they are when fitted.
 
-    A fit is more probable than its grid's linear form, or less, as shapes of friction are rounded
-    too: by as much as for the best structure without slopes it may be.
+    Behind a joint all of them, else those with slopes that leave but noise. A fit is more probable
+    than its grid's linear form, or less, as shapes of friction are rounded too: by as much as for
+    the best structure without slopes it may be.
     """
+    simulated = any(t.term.simulated for j in found.joined for t in j.terms)
     seen = set[tuple[int, ...]]()
-    while found.banded.quiet and found.banded.variants not in seen:
+    while (simulated or found.banded.quiet) and found.banded.variants not in seen:
         banded = found.banded
         seen.add(banded.variants)
-        shaped = [b for b, k in enumerate(banded.variants) if _has_slopes(found.variants[k])]
-        promised = _promised(found) if shaped else 0.0
+        bands = [
+            b for b, k in enumerate(banded.variants) if simulated or _has_slopes(found.variants[k])
+        ]
+        promised = _promised(found) if bands else 0.0
         if promised <= _MORE:
             return found
         values, value = banded.by_variant.copy(), banded.value
-        for band in shaped:
-            more = promised - _promised(_without_slopes(found, band))
+        for band in bands:
+            alike, more = [banded.variants[band]], promised
+            if simulated:  # a fit finds the best of its shapes
+                own = ids_of(found.variants[alike[0]])
+                alike = [k for k, v in enumerate(found.variants) if ids_of(v) == own]
+            else:
+                more -= _promised(_without_slopes(found, band))
             before = logsumexp(values[band])
-            values[band, banded.variants[band]] -= max(more, 0.0)
+            values[band, alike] -= max(more, 0.0)
             value += float(logsumexp(values[band]) - before)
         found = found.with_values(values)
         found = replace(found, banded=replace(found.banded, value=value))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import chain
@@ -45,19 +44,24 @@ def composite_of(
     return Composite((*chain(*terms[:own]), *map(Placed, joined), *shared))
 
 
-def as_it_was(model: Composite, before: Composite) -> Composite | None:
-    """Return a model with the values that the same terms had in one fitted before.
+def as_it_was(model: Composite, before: Composite) -> Composite:
+    """Return a model with the values that terms had in one fitted before, and no more.
 
-    None where it has other terms. Of terms alike, as those of several bands, the order counts.
+    Of terms alike, as those of several bands, the order counts, and the last stands for those that
+    are more. A term that the other had not begins at next to nothing.
     """
     known: dict[str, list[FittedTerm]] = {}
     for placed in before.terms:
         known.setdefault(placed.fitted.id, []).append(placed.fitted)
-    own = Counter(p.fitted.id for p in model.terms)
-    if own != {i: len(terms) for i, terms in known.items()}:
-        return None
-    values = {i: iter(terms) for i, terms in known.items()}
-    return Composite(tuple(replace(p, fitted=next(values[p.fitted.id])) for p in model.terms))
+    terms = []
+    for placed in model.terms:
+        own = known.get(placed.fitted.id)
+        if own is None:
+            there = begun(placed.fitted, 0.0)
+        else:
+            there = own.pop(0) if len(own) > 1 else own[0]
+        terms.append(replace(placed, fitted=there))
+    return Composite(tuple(terms))
 
 
 def coefficients(

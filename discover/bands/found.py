@@ -127,8 +127,8 @@ class Found:
         From the first, one shape of what changes the motion may not be reached from another.
         """
         model, assessor = self.model, self.device.assessor
-        before = None if self.before is None else as_it_was(model, self.before)
-        if before is not None:
+        if self.before is not None:
+            before = as_it_was(model, self.before)
             model = assessor.nearest([model, before], self.banded.place)
         return assessor.assess(model, self.banded.place)
 

@@ -78,7 +78,7 @@ def grown(
     curved = with_curve(assessor, now, turns[0]) if turns else now
     most: dict[Place, float] = {}
     for simulated in (False, True):
-        chosen = [i for i in ids if _simulated(i) is simulated]
+        chosen = [i for i in ids if TERMS[i].simulated is simulated]
         if simulated and any(c.assessed and c.assessed.quiet for c in found):
             better = [TERMS[c.id] for c in found if c.id and c.assessed and c.value > now.value]
             chosen = [i for i in chosen if any(i in t.mistaken_for for t in better)]
@@ -174,11 +174,6 @@ def _predicting(candidate: Candidate, before: Array) -> Candidate:
     return replace(candidate, left=predicted_no_worse(candidate.assessed, before))
 
 
-def _simulated(identifier: str) -> bool:
-    term = TERMS[identifier]
-    return term.acts == "input" or term.impacts is not None
-
-
 def _tried(
     assessor: Assessor, beside: tuple[Assessed, Assessed], turns: Sequence[FittedTerm],
     ids: Sequence[str], among: int, most: dict[Place, float], least: float,
@@ -193,7 +188,7 @@ def _tried(
     by_id: dict[str, list[_Weighed]] = {}
     for acting in (True, False):
         own = [i for i in ids if (TERMS[i].acts == "force") is acting]
-        simulated = any(_simulated(i) for i in own)
+        simulated = any(TERMS[i].simulated for i in own)
         for model in [now] if acting or curved is now else [curved] if simulated else [now, curved]:
             trials = trials_of(assessor.space.scales, coarse, own, model.model, among=among)
             for identifier, found_here in _weighed(assessor, model, trials).items():

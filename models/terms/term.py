@@ -163,6 +163,11 @@ class Term:
             return self.bounds(shape)
         return (0.0 if self.nonnegative else -math.inf), math.inf
 
+    @property
+    def simulated(self) -> bool:
+        """True where the motion behind it has to be found in time: no column says what it does."""
+        return self.acts == "input" or self.impacts is not None
+
     def has_impacts(self, shape: Shape) -> bool:
         """Tell whether a shape has impacts."""
         return self.impacts is not None and self.impacts(shape)
