@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from discover.words import capitalize_first
+from discover.words import capitalize_first, significant
 from models.checks import Array
 from models.device import Device
 from models.flow import dean_per_speed
@@ -204,7 +204,8 @@ def _verdict_and_reason(
 ) -> tuple[str, str]:
     """Return the verdict on a boundary whose Dean number is known, and its reason."""
     lies = (
-        f"The boundary lies at a Dean number of {interval[0]:.3g} to {interval[1]:.3g}"
+        f"The boundary lies at a Dean number of {significant(interval[0], 3)} to"
+        f" {significant(interval[1], 3)}"
         f" ({convention} convention)"
     )
     if exponent is None:

@@ -13,7 +13,7 @@ from discover.gap.verdict import CLOSED
 from discover.posterior.local import judged
 from discover.records import Finding
 from discover.rows.held_out import NOT_MET, held_out_findings
-from discover.words import capitalize_first, short_name
+from discover.words import capitalize_first, short_name, significant
 from models.terms.between_tests import ONLY
 
 _WORSE = 1.02  # of a gap that was not fitted, from which a round is said to raise it
@@ -153,7 +153,7 @@ def _wrong_signs(at: Stage) -> list[Finding]:
                 Finding(
                     "warning",
                     f"{_named(fitted.id)} "
-                    f"would come out as {solved.mean[i]:.3g} {fitted.unit}, which it"
+                    f"would come out as {significant(solved.mean[i], 3)} {fitted.unit}, which it"
                     f" can't be, and is held at its limit: {why}.",
                 )
             )
@@ -294,8 +294,9 @@ def _of_every_test(at: Stage) -> list[Finding]:
         result.append(
             Finding(
                 "warning",
-                f"{_named(name)} is another one in every test (from {min(values):.3g} to"
-                f" {max(values):.3g}). No model predicts it, and records that were not fitted are"
+                f"{_named(name)} is another one in every test (from {significant(min(values), 3)}"
+                f" to {significant(max(values), 3)}). No model predicts it, and records that"
+                " were not fitted are"
                 " met with the others' mean: find what sets it, and hold that still.",
             )
         )

@@ -75,7 +75,10 @@ def residual(record: ShownRecord, *, name: str) -> str | None:
         if first.lag.size:
             limit = first.correlation_limit
             band = white.axhspan(-limit, limit, color=MUTED, alpha=0.28, linewidth=0.0)
-            white.legend([band], ["95 % of white noise"], loc="best", handlelength=1.2)
+            white.legend(  # above: the curves may be anywhere inside
+                [band], ["95 % of white noise"], loc="lower right", bbox_to_anchor=(1.0, 1.0),
+                borderaxespad=0.2, handlelength=1.2,
+            )
         white.set(xlabel="Lag (ms)", ylabel="Correlation", ylim=(-1.05, 1.05))
         white.locator_params(axis="x", nbins=5)
         handles, labels = spectrum.get_legend_handles_labels()
