@@ -137,6 +137,17 @@ class Assessor:
             space.forget()
         return value
 
+    def promised(self, near: Local, model: Composite, place: Place) -> float:
+        """Return the log evidence of a model at some sizes, nats, with the slopes of one near by.
+
+        On the coarse rows. It has other shapes, and no numbers that the other has not.
+        """
+        local = replace(near, model=model, force=self.evaluator.coarse.force(model))
+        if not np.all(np.isfinite(local.force)):
+            return -np.inf
+        space, curve = self.behind(model), self.curve_of(model)
+        return judged(local, local.beside(space, curve), place.sizes(space.own_unit)).value
+
     def nearest(self, models: Sequence[Composite], place: Place) -> Composite:
         """Return the model that a few steps of a fit make most probable, after these steps."""
         begun = [self.glance(m, place, iterations=FEW_STEPS) for m in models]
