@@ -13,45 +13,69 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import logsumexp
 
-from discover.bands.found import Found, ids_of
+from discover.bands.found import Found, held, ids_of, in_family
 from discover.posterior.structures import Variant
+from models.checks import Array
 
 _MORE = 10.0
-"""Nats, by which slopes may promise more than a fit holds: priors and rounded shapes are less."""
+"""Nats, by which a linear form may be off before a fit is asked: priors and rounded shapes are
+less."""
 
 
 def as_fitted(found: Found) -> Found:
     """Return the answer with structures weighed as they are when fitted.
 
-    Behind a joint all of them, else those with slopes that leave but noise. A fit is more probable
-    than its grid's linear form, or less, as shapes of friction are rounded too: by as much as for
-    the best structure without slopes it may be.
+    Behind a joint all that may be, else those with slopes that leave but noise. A fit is more
+    probable than its grid's linear form, or less, as shapes of friction are rounded too: by as much
+    as for the best structure without slopes it may be.
     """
-    simulated = any(t.term.simulated for j in found.joined for t in j.terms)
+    if any(t.term.simulated for j in found.joined for t in j.terms):
+        return _each_fitted(found)
     seen = set[tuple[int, ...]]()
-    while (simulated or found.banded.quiet) and found.banded.variants not in seen:
+    while found.banded.quiet and found.banded.variants not in seen:
         banded = found.banded
         seen.add(banded.variants)
-        bands = [
-            b for b, k in enumerate(banded.variants) if simulated or _has_slopes(found.variants[k])
-        ]
-        promised = _promised(found) if bands else 0.0
+        shaped = [b for b, k in enumerate(banded.variants) if _has_slopes(found.variants[k])]
+        promised = _promised(found) if shaped else 0.0
         if promised <= _MORE:
             return found
-        values, value = banded.by_variant.copy(), banded.value
-        for band in bands:
-            alike, more = [banded.variants[band]], promised
-            if simulated:  # a fit finds the best of its shapes
-                own = ids_of(found.variants[alike[0]])
-                alike = [k for k, v in enumerate(found.variants) if ids_of(v) == own]
-            else:
-                more -= _promised(_without_slopes(found, band))
-            before = logsumexp(values[band])
-            values[band, alike] -= max(more, 0.0)
-            value += float(logsumexp(values[band]) - before)
-        found = found.with_values(values)
-        found = replace(found, banded=replace(found.banded, value=value))
+        values = banded.by_variant.copy()
+        for band in shaped:
+            more = promised - _promised(_without_slopes(found, band))
+            values[band, banded.variants[band]] -= max(more, 0.0)
+        found = _weighed(found, values)
     return found
+
+
+def _each_fitted(found: Found) -> Found:
+    """Return the answer with every band's structures weighed by a fit, those that may be best."""
+    seen = set[tuple[int, tuple[str, ...]]]()
+    while True:
+        values = found.banded.by_variant.copy()
+        possible = in_family(found.device, found.search, values)
+        likely = possible > possible.max(axis=1, keepdims=True) - _MORE
+        for band, place in np.argwhere(likely):
+            own = tuple(ids_of(found.variants[place]))
+            if (int(band), own) not in seen:
+                break
+        else:
+            return found
+        seen.add((int(band), own))
+        alike = [k for k, v in enumerate(found.variants) if tuple(ids_of(v)) == own]
+        variants = list(found.banded.variants)
+        variants[band] = max(alike, key=lambda k: float(values[band, k]))
+        trial = replace(found, banded=replace(found.banded, variants=tuple(variants)))
+        values[band, alike] += _fitted_value(trial) - logsumexp(values[band, alike])
+        found = _weighed(found, values)
+
+
+def _weighed(found: Found, values: Array) -> Found:
+    """Return the answer with other log evidence (B, V) of its structures, and its own by it."""
+    banded = found.banded
+    gained = logsumexp(values, axis=1) - logsumexp(banded.by_variant, axis=1)
+    found = found.with_values(values)
+    banded = replace(found.banded, value=banded.value + float(gained.sum()))
+    return replace(found, banded=held(found.device, found.search, banded))
 
 
 def _has_slopes(variant: Variant) -> bool:
@@ -74,13 +98,18 @@ def _promised(found: Found) -> float:
 
     At the same sizes; where the fit has others, at its most probable ones.
     """
-    banded, visited = found.banded, found.assessed.visited
-    held = visited.get(banded.place, max(visited.values()))
-    held += sum(_prior(found.variants, place) for place in banded.variants)
+    banded, value = found.banded, _fitted_value(found)
     return max(
-        float(banded.by_variant[band, place]) - held
+        float(banded.by_variant[band, place]) - value
         for band, place in enumerate(banded.variants)
     )
+
+
+def _fitted_value(found: Found) -> float:
+    """Return the log evidence of an answer's structures when fitted, with their prior, nats."""
+    banded, visited = found.banded, found.assessed.visited
+    value = visited.get(banded.place, max(visited.values()))
+    return value + sum(_prior(found.variants, place) for place in banded.variants)
 
 
 def _prior(variants: Sequence[Variant], place: int) -> float:

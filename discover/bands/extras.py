@@ -14,8 +14,8 @@ import numpy as np
 
 from discover.bands.as_fitted import as_fitted
 from discover.bands.dividing import searched
-from discover.bands.found import Device, Found, Joined, ids_of
-from discover.bands.search import Banded, BandSearch
+from discover.bands.found import Device, Found, Joined, held
+from discover.bands.search import BandSearch
 from discover.bands.variants import variants_of
 from discover.posterior.assess import Assessed
 from discover.posterior.climb import Place
@@ -30,7 +30,7 @@ from discover.rows import RecordRows, force_rows
 from discover.rows.columns import Behind
 from models.checks import Array
 from models.constitutive import FittedTerm
-from models.cores import TELLING, family_of
+from models.cores import TELLING
 
 
 def searched_with(
@@ -62,15 +62,6 @@ def _as_fitted(joined: Joined, behind: Assessed) -> Joined:
     """Return what has joined with the values that a model has for it."""
     own = tuple(p.fitted for p in behind.model.terms if p.fitted.id == joined.id)
     return replace(joined, terms=own) if len(own) == len(joined.terms) else joined
-
-
-def held(device: Device, search: BandSearch, banded: Banded) -> Banded:
-    """Return a division with the best structures of the device's family, where it has one."""
-    if device.family is None:
-        return banded
-    other = [family_of(ids_of(v)) != device.family for v in search.variants]
-    values = np.where(other, -np.inf, banded.by_variant)
-    return replace(banded, variants=tuple(int(v.argmax()) for v in values))
 
 
 def _chosen(way: Found) -> Found:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from discover.bands.composite import as_it_was, composite_of
 from discover.bands.search import Banded, BandSearch
 from discover.bands.variants import Grids
@@ -17,7 +19,7 @@ from discover.posterior.structures import Variant
 from discover.rows import RecordRows
 from models.checks import Array
 from models.constitutive import FittedTerm
-from models.cores import Core
+from models.cores import Core, family_of
 from models.terms import Term
 
 
@@ -142,3 +144,19 @@ class Found:
 def ids_of(variant: Variant) -> list[str]:
     """Return the ids of a structure's terms."""
     return [t.id for p in variant.parts for t in p.terms]
+
+
+def held(device: Device, search: BandSearch, banded: Banded) -> Banded:
+    """Return a division with the best structures of the device's family, where it has one."""
+    if device.family is None:
+        return banded
+    values = in_family(device, search, banded.by_variant)
+    return replace(banded, variants=tuple(int(v.argmax()) for v in values))
+
+
+def in_family(device: Device, search: BandSearch, by_variant: Array) -> Array:
+    """Return log evidence (B, V) of structures, -inf for those of another family than is asked."""
+    if device.family is None:
+        return by_variant
+    other = [family_of(ids_of(v)) != device.family for v in search.variants]
+    return np.where(other, -np.inf, by_variant)

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from discover.bands.extras import held, searched_with, with_one_more, with_several
-from discover.bands.found import Device, Found, ids_of
+from discover.bands.extras import searched_with, with_one_more, with_several
+from discover.bands.found import Device, Found, held, ids_of
 from discover.bands.idle import without_idle
 from discover.bands.together import together
 from discover.posterior.left_out import is_told_from_noise, predicts_better

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from discover.bands.extras import held, searched_with
-from discover.bands.found import ids_of
+from discover.bands.extras import searched_with
+from discover.bands.found import held, ids_of
 from discover.records import Campaign, Record
 from discover.study import StudyOptions
 from discover.study.prepare import prepare

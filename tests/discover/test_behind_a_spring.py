@@ -1,4 +1,4 @@
-"""Friction that reverses over a displacement, behind a soft spring: by SciPy, after Dahl."""
+"""Friction that reverses over a displacement, after Dahl, behind a soft spring; by SciPy."""
 
 from functools import cache
 
@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from discover import run_study
 from discover.posterior.grow import grown
+from discover.records import Campaign
+from tests.discover.gap_data import record
 from tests.discover.posterior.small import assessor_of, model_of, rows_of
 
 MASS, VISCOUS = 2.0, 12.0
@@ -62,3 +65,18 @@ def test_the_spring_is_found_with_the_curve_that_friction_has_behind_it():
     assert found["coulomb-friction"].coefficient == pytest.approx(FRICTION, rel=0.05)
     assert found["coulomb-friction"].shape["presliding"] == pytest.approx(PRESLIDING, rel=0.5)
     assert found["series-compliance"].coefficient == pytest.approx(1.0 / STIFFNESS, rel=0.03)
+
+
+@pytest.mark.sweep
+def test_a_study_names_structure_and_spring():
+    rng = np.random.default_rng(1)
+    records = tuple(record(f, a, law, rng, noise=0.01) for f, a in PLAN)
+    (band,) = run_study(Campaign("behind a spring", records)).bands
+    assert band.structure == "IOIM-linear"
+    assert band.probability > 0.8
+    spring = next(e for e in band.extras if e.term.fitted.id == "series-compliance")
+    assert spring.probability > 0.9
+    inertance = next(t for t in band.terms if t.fitted.id == "inertia")
+    low, high = inertance.interval
+    assert low <= MASS * 1.01 and high >= MASS * 0.99 and high - low < 0.1 * MASS
+    assert band.relative_error_percent < 1.5 * band.noise_percent
