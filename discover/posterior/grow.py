@@ -33,7 +33,7 @@ _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the ri
 _NEARLY = 0.8  # likewise, where another explains all but noise already
 _TOLD = 3.0  # nats, by which a discrete choice is to be more probable than the plain one
 _GAINED = 1.0  # nats, by which another curve of friction is to be more probable
-_NATS = 20.0  # less than that; also of evidence, by which a term may lose beside a remainder
+_NATS = 20.0  # less than these shares; also of evidence, that a term may lose beside a remainder
 
 
 @dataclass(frozen=True)
