@@ -54,13 +54,12 @@ def _each_fitted(found: Found) -> Found:
         values = found.banded.by_variant.copy()
         possible = in_family(found.device, found.search, values)
         likely = possible > possible.max(axis=1, keepdims=True) - _MORE
-        for band, place in np.argwhere(likely):
-            own = tuple(ids_of(found.variants[place]))
-            if (int(band), own) not in seen:
-                break
-        else:
+        structures = [(int(b), tuple(ids_of(found.variants[k]))) for b, k in np.argwhere(likely)]
+        one = next((s for s in structures if s not in seen), None)
+        if one is None:
             return found
-        seen.add((int(band), own))
+        seen.add(one)
+        band, own = one
         alike = [k for k, v in enumerate(found.variants) if tuple(ids_of(v)) == own]
         variants = list(found.banded.variants)
         variants[band] = max(alike, key=lambda k: float(values[band, k]))

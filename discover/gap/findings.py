@@ -296,8 +296,8 @@ def _of_every_test(at: Stage) -> list[Finding]:
                 "warning",
                 f"{_named(name)} is another one in every test (from {significant(min(values), 3)}"
                 f" to {significant(max(values), 3)}). No model predicts it, and records that were"
-                " not fitted are"
-                " met with the others' mean: find what sets it, and hold that still.",
+                " not fitted are met with the others' mean: find what sets it, and hold that"
+                " still.",
             )
         )
     return result

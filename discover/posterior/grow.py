@@ -17,7 +17,7 @@ from discover.posterior.catalogue import trials_of
 from discover.posterior.climb import Place
 from discover.posterior.left_out import predicted_no_worse, unseen
 from discover.posterior.model import Composite
-from discover.posterior.own_curve import likely_curves, place_of, with_curve
+from discover.posterior.own_curve import chosen_behind, likely_curves, place_of, with_curve
 from discover.posterior.own_share import own_lines
 from discover.posterior.space import begun
 from discover.posterior.step import Candidate, Step, ordered
@@ -32,7 +32,6 @@ _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
 _HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
 _NEARLY = 0.8  # likewise, where another explains all but noise already
 _TOLD = 3.0  # nats, by which a discrete choice is to be more probable than the plain one
-_GAINED = 1.0  # nats, by which another curve of friction is to be more probable
 _NATS = 20.0  # less than these shares; also of evidence, that a term may lose beside a remainder
 
 
@@ -316,27 +315,11 @@ def _turned(assessor: Assessor, found: Candidate, starts: Sequence[Gain]) -> Can
 
 
 def _with_likely_curve(assessor: Assessor, found: Candidate) -> Candidate:
-    """Return a candidate with the curve of friction that is best beside it.
-
-    How the device moves behind a joint hangs on friction's curve. Which one is likely without the
-    joint says little: what yields there looks like friction that reverses over a displacement.
-    """
-    here, curve = found.assessed, assessor.friction
-    if here is None or curve is None or not TERMS[found.id].simulated:
+    """Return a candidate with the curve of friction that is best beside what is simulated."""
+    if found.assessed is None or not TERMS[found.id].simulated:
         return found
-    if not any(p.fitted.id == curve.id and not p.held for p in here.model.terms):
-        return found
-    shapes = [t.shape for t in curve.terms if t.id == curve.id]
-    better = True
-    while better:
-        at = place_of(curve, here.model)
-        turned = [here.model.with_shape(at, shape) for shape in shapes]
-        values = np.array([assessor.promised(here.local, m, here.place) for m in turned])
-        likely = [turned[k] for k in np.argsort(-values)[:_SHAPES]]
-        there = assessor.assess(assessor.nearest(likely, here.place), here.place)
-        better = there.value > here.value + _GAINED
-        here = there if better else here
-    return replace(found, assessed=here, value=here.value + found.log_prior)
+    there = chosen_behind(assessor, found.assessed)
+    return replace(found, assessed=there, value=there.value + found.log_prior)
 
 
 def _plain_where_not_told(

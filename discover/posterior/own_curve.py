@@ -17,6 +17,7 @@ from models.checks import Array
 from models.constitutive import FittedTerm
 
 _BETTER = 1.0  # nats, by which a curve is to be more probable than the one that a model has
+_LIKELIEST = 3  # curves behind a joint, from which a fit starts
 
 
 def curves(space: Space, curve: Part) -> Array:
@@ -89,3 +90,28 @@ def with_curve(assessor: Assessor, assessed: Assessed, fitted: FittedTerm) -> As
         return assessed
     turned = model.with_shape(place_of(curve, model), fitted.shape)
     return assessor.assess(turned, assessed.place)
+
+
+def chosen_behind(assessor: Assessor, assessed: Assessed) -> Assessed:
+    """Return a model with the curve of friction that is best beside its joint.
+
+    How the device moves behind a joint hangs on friction's curve. Which one is likely without the
+    joint says little: what yields there looks like friction that reverses over a displacement.
+    Curves are ranked by what the model's slopes promise of them, as long as another one is better.
+    """
+    curve = assessor.friction
+    if curve is None or not any(
+        p.fitted.id == curve.id and not p.held for p in assessed.model.terms
+    ):
+        return assessed
+    shapes = [t.shape for t in curve.terms if t.id == curve.id]
+    here = assessed
+    while True:
+        at, place = place_of(curve, here.model), here.place
+        turned = [here.model.with_shape(at, shape) for shape in shapes]
+        values = np.array([assessor.promised(here.local, m, place) for m in turned])
+        likely = [turned[k] for k in np.argsort(-values)[:_LIKELIEST]]
+        there = assessor.assess(assessor.nearest(likely, place), place)
+        if there.value <= here.value + _BETTER:
+            return here
+        here = there

@@ -69,7 +69,7 @@ def column(motion: Motion, shape: Shape) -> Array:
     x, limit = np.ascontiguousarray(motion.displacement), shape["yield_displacement"]
     passes = 2 if motion.periodic else 1
     if shape["form"] == DAHL:
-        return np.asarray(_dahl(x, limit, np.ones_like(x), passes=passes))
+        return bristle_state(motion, limit)
     if shape["form"] == IWAN:
         limits = 2.0 * limit * (np.arange(_SLIDERS) + 0.5) / _SLIDERS
         parts = [_stop(x, each, passes=passes) * each for each in limits]
