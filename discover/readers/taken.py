@@ -27,7 +27,14 @@ from discover.readers.joined import joined
 from discover.readers.long_record import read_record_of_any_length
 from discover.readers.plausibility import sizes_of
 from discover.readers.source import Book, Source
-from discover.record_checks import apparent_of, digest_of, force_deviation, returns, work_of
+from discover.record_checks import (
+    apparent_of,
+    digest_of,
+    force_deviation,
+    returns,
+    turns,
+    work_of,
+)
 from discover.record_kind import classify
 from discover.records import Finding, Record
 from models.checks import InputError
@@ -180,6 +187,7 @@ def _found(each: Taken, asked: Asked) -> _Found:
     digest_of(record)
     force_deviation(record)
     returns(record)
+    turns(record)
     work = work_of(record)
     if record.displacement is not None:
         sizes_of(record)

@@ -6,6 +6,7 @@ from discover.record_checks.asked_once import (
     digest_of,
     force_deviation,
     returns,
+    turns,
     work_of,
 )
 from discover.record_checks.check import (
@@ -34,5 +35,6 @@ __all__ = [
     "force_deviation",
     "loop_work",
     "returns",
+    "turns",
     "work_of",
 ]

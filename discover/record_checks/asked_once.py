@@ -8,7 +8,7 @@ import numpy as np
 
 from discover.record_checks.apparent import Apparent, apparent
 from discover.record_checks.loop_work import LoopWork, loop_work
-from discover.record_checks.one_way import comes_back
+from discover.record_checks.one_way import comes_back, turns_back
 from discover.record_kind import classify
 from discover.records import Record
 
@@ -39,6 +39,11 @@ def returns(record: Record) -> bool:
     return record.once(_returns)
 
 
+def turns(record: Record) -> bool:
+    """Return whether a record's displacement both rises and falls, or nothing tells it."""
+    return record.once(_turns)
+
+
 def force_deviation(record: Record) -> float:
     """Return the force's root mean square about its mean, N."""
     return record.once(_force_deviation)
@@ -58,6 +63,11 @@ def _apparent(record: Record) -> Apparent | None:
 def _returns(record: Record) -> bool:
     even = record.even
     return even.displacement is None or comes_back(even.displacement)
+
+
+def _turns(record: Record) -> bool:
+    even = record.even
+    return even.displacement is None or turns_back(even.displacement)
 
 
 def _digest(record: Record) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from discover.motion_fit import Observation
-from discover.record_checks.asked_once import apparent_of, digest_of, returns, work_of
+from discover.record_checks.asked_once import apparent_of, digest_of, returns, turns, work_of
 from discover.record_kind import RecordKind, classify
 from discover.records import Campaign, Finding, Record
 from discover.rows import compared_with
@@ -154,6 +154,7 @@ def _of_campaign(campaign: Campaign) -> list[Finding]:
     return [
         *_signs(campaign.records),
         *_one_way(campaign),
+        *_one_direction(campaign),
         *_copies(campaign.records),
         *_roles(campaign),
     ]
@@ -174,6 +175,18 @@ def _one_way(campaign: Campaign) -> list[Finding]:
     return [
         Finding("error" if lone else "warning", text, r.file) for r in fitted if not returns(r)
     ]
+
+
+def _one_direction(campaign: Campaign) -> list[Finding]:
+    """Return a finding where no motion turns back, but some model may still be told."""
+    fitted = campaign.fitted
+    if any(turns(r) for r in fitted) or not any(returns(r) for r in fitted):
+        return []
+    text = (
+        "no fitted record turns back: dry friction and a constant force are one number here;"
+        " measure a stroke out and back"
+    )
+    return [Finding("warning", text)]
 
 
 def _signs(records: tuple[Record, ...]) -> list[Finding]:

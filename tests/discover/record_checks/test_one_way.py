@@ -78,6 +78,25 @@ def test_what_comes_back(x: np.ndarray, comes_back: bool, noise: float) -> None:
     assert found(x + noise * np.ptp(x) * rng.standard_normal(x.size)) is comes_back
 
 
+def _strokes(folder: Path, back: int) -> None:
+    """Write three strokes from rest to rest, of which some are followed by the way back."""
+    for k, seconds in enumerate((1.0, 2.0, 4.0)):
+        cycles = 1.0 if k < back else 0.5
+        time = np.linspace(0.0, seconds, 400)
+        _write(folder / f"{k}.csv", time, -0.01 * np.cos(2.0 * np.pi * cycles * time / seconds))
+    (folder / "campaign.toml").write_text("".join(_record(f"{k}.csv") for k in range(3)))
+
+
+@pytest.mark.parametrize("back", [0, 1])
+def test_strokes_that_never_turn_back_do_not_tell_friction_from_a_constant_force(
+    tmp_path: Path, back: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _strokes(tmp_path, back)
+    assert main(["check", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
+    said = "Warning: no fitted record turns back: dry friction and a constant force are one number"
+    assert (said in capsys.readouterr().out) is (back == 0)
+
+
 @given(
     st.floats(1e-6, 1e6),
     st.floats(-1e3, 1e3),
