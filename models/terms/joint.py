@@ -83,10 +83,10 @@ def through_joint(force: Array, motion: Motion, joint: Joint, device: JointDevic
     bears = joint.gap == 0.0 and joint.lower == -np.inf and joint.upper == np.inf
     driven = device.for_spring() if bears else device._replace(curve=device.curve[:0])
     rigid = driven.force(motion, dry=not joint.fluid_only)
+    if not np.isfinite(force @ force + rigid @ rigid):
+        return np.full_like(force, np.nan)  # beyond all numbers: there is no such device
     if not np.any(rigid):
         return force
-    if not np.isfinite(rigid @ rigid):
-        return np.full_like(force, np.nan)  # beyond all numbers: there is no such device
     if joint.fluid_only:
         driven = driven._replace(dry=0.0)
     if bears:

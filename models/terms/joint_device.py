@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.checks import Array
+from models.compiled import compiled
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state
 from models.terms.speed_curve import SpeedCurves, nodes_of
+from models.terms.stepping import on_curve
 from models.terms.term import ForceOf, unchanged
 
 _RIDGE = 1e-12
@@ -52,15 +54,14 @@ class JointDevice(NamedTuple):
 
     def force(self, motion: Motion, *, dry: bool = True) -> Array:
         """Return the force (N,) in a motion, N; with or without the dry resistance."""
-        v, x = motion.velocity, motion.displacement
-        found = self.mass * motion.acceleration + self.viscous * v
-        found = found + self.quadratic * v * np.abs(v) + self.spring * (x - x.mean())
+        known = _Known.of(motion)
+        slides = self.dry if dry and self.length == 0.0 else 0.0
+        found = _driven(
+            known.place, motion.velocity, motion.acceleration, self.mass, self.viscous,
+            self.quadratic, slides, self.reversal, self.spring, self.curve, self.top,
+        )  # fmt: skip
         if dry and self.length > 0.0:
             found = found + self.dry * bristle_state(motion, self.length)
-        elif dry:
-            found = found + self.dry * np.tanh(v / self.reversal)
-        if self.curve.size:
-            found = found + np.interp(v, nodes_of(self.top), self.curve)
         return np.asarray(found)
 
     def for_spring(self) -> Self:
@@ -78,6 +79,22 @@ class JointDevice(NamedTuple):
         there = min(whole[middle + beyond], -whole[middle - beyond]) / turned[middle + beyond]
         dry = max(float(there), 0.0)
         return self._replace(dry=dry, curve=np.asarray(whole - dry * turned))
+
+
+@compiled(cache=True, nogil=True)
+def _driven(
+    x: Array, v: Array, a: Array, mass: float, viscous: float, quadratic: float, dry: float,
+    reversal: float, spring: float, curve: Array, top: float,
+) -> Array:
+    """Return the force (N,) of a device whose friction does not deflect."""
+    found = np.empty(v.size)
+    for i in range(v.size):
+        found[i] = mass * a[i] + (viscous + quadratic * abs(v[i])) * v[i] + spring * x[i]
+        if dry != 0.0:
+            found[i] += dry * np.tanh(v[i] / reversal)
+        if curve.size > 0:
+            found[i] += on_curve(curve, top, v[i])[0]
+    return found
 
 
 _NONE = np.zeros(0)
@@ -116,13 +133,29 @@ class _Resistances:
 
         None is negative: the best of the sets of columns that need no negative one.
         """
-        at = _picked(len(self.solving))
-        side = (self.columns @ force / self.scale)[at]
-        found = np.einsum("tsij,tj->tsi", self.solving, side)
-        gained = np.einsum("tsi,ti->ts", found, side)
-        gained[found.min(axis=2) < 0.0] = -1.0
-        k, some = np.unravel_index(int(gained.argmax()), gained.shape)
-        return found[k, some] / self.scale[at[k]], int(k)
+        found, best = _not_negative(self.columns @ force / self.scale, self.solving)
+        return found / self.scale[[0, 1, 2, 3 + best]], best
+
+
+@compiled(cache=True, nogil=True)
+def _not_negative(side: Array, solving: Array) -> tuple[Array, int]:
+    """Return what `_Resistances.fitted` does, over columns of size one."""
+    most, best, result = -1.0, 0, np.zeros(4)
+    own, found = side[:4].copy(), np.zeros(4)
+    for k in range(solving.shape[0]):
+        own[3] = side[3 + k]
+        for some in range(solving.shape[1]):
+            gained, least = 0.0, 0.0
+            for i in range(4):
+                found[i] = 0.0
+                for j in range(4):
+                    found[i] += solving[k, some, i, j] * own[j]
+                gained += found[i] * own[i]
+                least = min(least, found[i])
+            if least == 0.0 and gained > most:
+                most, best = gained, k
+                result[:] = found
+    return result, best
 
 
 def _picked(frictions: int) -> NDArray[np.intp]:
@@ -130,16 +163,56 @@ def _picked(frictions: int) -> NDArray[np.intp]:
     return np.array([[0, 1, 2, 3 + k] for k in range(frictions)])
 
 
+@dataclass(frozen=True)
+class _Deflecting:
+    """A spring and, one at a time, T frictions that deflect."""
+
+    place: Array
+    """(N,) m."""
+    states: Array
+    """(T, N) of the frictions."""
+    own: Array
+    """(T,) their squares."""
+    across: Array
+    """(T,) their products with the place."""
+    determinant: Array
+    """(T,) of the products of a friction and the spring."""
+
+    @classmethod
+    def of(cls, place: Array, states: Array) -> Self:
+        """Return those of a place (N,) and of frictions' states (T, N)."""
+        own, across = np.einsum("tn,tn->t", states, states), states @ place
+        return cls(place, states, own, across, own * (place @ place) - across**2)
+
+    def stiffness(self, lost: Array, alone: float) -> float:
+        """Return the spring's stiffness, N/m, with the friction that fits a force (N,) best.
+
+        That `alone` where no friction beside it fits better.
+        """
+        sought = lost - lost.mean()
+        side, other = self.states @ sought, float(self.place @ sought)
+        spring = self.place @ self.place
+        friction = (spring * side - self.across * other) / self.determinant
+        stiffness = (self.own * other - self.across * side) / self.determinant
+        gained = np.where(friction > 0.0, friction * side + stiffness * other, -np.inf)
+        best = int(gained.argmax())
+        return float(stiffness[best]) if gained[best] > alone * other else alone
+
+
 @dataclass
 class _Known:
     """What was found out on a motion, which keeps it: one device is tried behind many joints."""
 
+    place: Array
+    """(N,) m, displacement about its mean."""
     devices: dict[tuple[int, bool, bool], tuple[ReferenceType[Array], JointDevice]] = field(
         default_factory=dict
     )
     """By the force's identity, whether it came without a model, whether friction may deflect."""
     resistances: dict[bool, _Resistances] = field(default_factory=dict)
     """By whether friction may deflect."""
+    deflecting: _Deflecting | None = None
+    """None where it was not asked for."""
     curves: SpeedCurves | None = None
     """None where they were not asked for."""
     still: Motion | None = None
@@ -148,7 +221,10 @@ class _Known:
     @classmethod
     def of(cls, motion: Motion) -> Self:
         """Return what is known on a motion."""
-        known: Self = motion.kept.setdefault(__name__, cls())
+        known: Self | None = motion.kept.get(__name__)
+        if known is None:
+            x = motion.displacement
+            known = motion.kept.setdefault(__name__, cls(np.ascontiguousarray(x - x.mean())))
         return known
 
 
@@ -172,13 +248,13 @@ def device_of(
     deflects : bool
         Whether dry friction may deflect before it slides.
     """
-    devices, key = _Known.of(motion).devices, (id(force), force_of is None, deflects)
+    here, key = _Known.of(motion), (id(force), force_of is None, deflects)
+    devices = here.devices
     known = devices.get(key)
     if known is not None and known[0]() is force:
         return known[1]
     stiffness = 0.0 if force_of is None else _stiffness(force, motion, force_of, deflects=deflects)
-    place = motion.displacement - motion.displacement.mean()
-    found = _device(force - stiffness * place, motion, deflects=deflects)
+    found = _device(force - stiffness * here.place, motion, deflects=deflects)
     found = found._replace(spring=stiffness)
     if len(devices) >= _MOST_KNOWN:
         devices.pop(list(devices)[0], None)  # threads may be here too
@@ -205,30 +281,13 @@ def _stiffness(force: Array, motion: Motion, force_of: ForceOf, *, deflects: boo
 
     Friction that deflects is lost too: of both that is the spring which fits best beside it.
     """
-    x = motion.displacement
-    added = unchanged(force_of)
+    place, added = _Known.of(motion).place, unchanged(force_of)
     whole = force if added is force_of else added(motion)
-    place, lost = x - x.mean(), whole - added(at_rest(motion))
+    lost = whole - added(at_rest(motion))
     slope = float(lost @ place) / max(float(place @ place), 1e-300)
     if deflects and slope != 0.0 and np.isfinite(slope):
-        slope = _beside_friction(lost, motion, slope)
+        slope = _deflecting_of(motion).stiffness(lost[_seen(motion)], slope)
     return slope if np.isfinite(slope) else 0.0
-
-
-def _beside_friction(lost: Array, motion: Motion, alone: float) -> float:
-    """Return the stiffness of a spring that with friction which deflects fits a force best."""
-    seen = _seen(motion)
-    place = (motion.displacement - motion.displacement.mean())[seen]
-    sought = lost[seen] - lost[seen].mean()
-    states = _resistances_of(motion, deflects=True).columns[3 + _REVERSALS.size :]
-    across, own, spring = states @ place, np.einsum("tn,tn->t", states, states), place @ place
-    side, other = states @ sought, float(place @ sought)
-    determinant = own * spring - across**2
-    friction = (spring * side - across * other) / determinant
-    stiffness = (own * other - across * side) / determinant
-    gained = np.where(friction > 0.0, friction * side + stiffness * other, -np.inf)
-    best = int(gained.argmax())
-    return float(stiffness[best]) if gained[best] > alone * other else alone
 
 
 def _device(force: Array, motion: Motion, *, deflects: bool) -> JointDevice:
@@ -265,6 +324,15 @@ def _resistances_of(motion: Motion, *, deflects: bool) -> _Resistances:
             dry = np.concatenate([dry, states])
         known[deflects] = _Resistances.of(plain, dry)
     return known[deflects]
+
+
+def _deflecting_of(motion: Motion) -> _Deflecting:
+    """Return what tells a spring from friction that deflects in a motion, evaluated once."""
+    known = _Known.of(motion)
+    if known.deflecting is None:
+        states = _resistances_of(motion, deflects=True).columns[3 + _REVERSALS.size :]
+        known.deflecting = _Deflecting.of(known.place[_seen(motion)], states)
+    return known.deflecting
 
 
 def _lengths_of(motion: Motion) -> Array:

@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from models.checks import Array, Indices
+from models.compiled import compiled
 
 _NODES = 24  # of each direction, beside that at rest
 _TURNS = 2  # of taking what is left; the first alone rounds bends
@@ -41,14 +42,20 @@ class SpeedCurves:
         Nodes without samples lie on a line between those with some. A mean never goes beyond what
         there is, as a fit of lines does beside a jump.
         """
-        known = self.weight > 0.0
-        found, left = np.zeros(self.nodes.size), force
-        for _ in range(_TURNS):
-            mean = _around(self.below, self.share, left, self.nodes.size)[known]
-            more = np.interp(self.nodes, self.nodes[known], mean / self.weight[known])
-            found += more
-            left = left - (more[self.below] + self.share * np.diff(more)[self.below])
-        return found
+        return np.asarray(_fitted(self.below, self.share, self.weight, self.nodes, force))
+
+
+@compiled(cache=True, nogil=True)
+def _fitted(below: Indices, share: Array, weight: Array, nodes: Array, force: Array) -> Array:
+    known = weight > 0.0
+    found, left = np.zeros(nodes.size), force.copy()
+    for _ in range(_TURNS):
+        mean = _around(below, share, left, nodes.size)[known]
+        more = np.interp(nodes, nodes[known], mean / weight[known])
+        found += more
+        for i, node in enumerate(below):
+            left[i] -= more[node] + share[i] * (more[node + 1] - more[node])
+    return found
 
 
 def nodes_of(top: float) -> Array:
@@ -57,7 +64,11 @@ def nodes_of(top: float) -> Array:
     return np.asarray(top * steps * np.abs(steps))
 
 
+@compiled(cache=True, nogil=True)
 def _around(below: Indices, share: Array, values: Array, count: int) -> Array:
     """Return sums (count,) of values (N,) around nodes, by how near each is."""
-    found = np.bincount(below, (1.0 - share) * values, minlength=count)
-    return np.asarray(found + np.bincount(below + 1, share * values, minlength=count))
+    found = np.zeros(count)
+    for i, node in enumerate(below):
+        found[node] += (1.0 - share[i]) * values[i]
+        found[node + 1] += share[i] * values[i]
+    return found
