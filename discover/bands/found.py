@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Hashable
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -92,6 +93,9 @@ class Found:
     """A model fitted beside what has joined, from which the bands were searched."""
     rivals: tuple[Found, ...] = ()
     """Where other ways ended, with other terms joined, where more than noise is left."""
+    fits: dict[Hashable, Assessed] = field(default_factory=dict, repr=False, compare=False)
+    """Models fitted with what has joined, by division and structures: which is best is asked of
+    several in turn."""
 
     @property
     def value(self) -> float:
@@ -122,17 +126,21 @@ class Found:
         """
         return 1.0 if self.quiet else own_share(self.assessed.predicting)
 
-    @cached_property
+    @property
     def assessed(self) -> Assessed:
         """The model, fitted from where the search found it, or as its terms were before.
 
         From the first, one shape of what changes the motion may not be reached from another.
         """
-        model, assessor = self.model, self.device.assessor
-        if self.before is not None:
-            before = as_it_was(model, self.before)
-            model = assessor.nearest([model, before], self.banded.place)
-        return assessor.assess(model, self.banded.place)
+        banded = self.banded
+        key = banded.shares.tobytes(), banded.variants, banded.place
+        if key not in self.fits:
+            model, assessor = self.model, self.device.assessor
+            if self.before is not None:
+                before = as_it_was(model, self.before)
+                model = assessor.nearest([model, before], banded.place)
+            self.fits[key] = assessor.assess(model, banded.place)
+        return self.fits[key]
 
     def with_values(self, by_variant: Array) -> Found:
         """Return the same with other log evidence (B, V) of each band's structures."""
