@@ -15,7 +15,7 @@ from discover.bands.idle import without_idle
 from discover.bands.together import together
 from discover.posterior.left_out import is_told_from_noise, predicts_better
 from discover.posterior.step import Step
-from models.cores import family_of
+from models.cores import OTHER, family_of
 
 MOST = 4
 """Terms that may join."""
@@ -28,7 +28,7 @@ def found(device: Device) -> Found:
     looked for with bands, with one band throughout, and beside the other family, until a way is
     found whose terms are all told and leave but noise.
     """
-    best = _or_one_band(searched_with(device, (), None))
+    best = _or_plainer(searched_with(device, (), None))
     if best.quiet:
         return best
     ends, seen = list[Found](), set[tuple[object, ...]]()
@@ -38,13 +38,53 @@ def found(device: Device) -> Found:
         end = _grown(start, seen)
         if end is None:
             continue
-        end = _or_one_band(end) if end.quiet else without_idle(end)
+        end = _or_plainer(end) if end.quiet else without_idle(end)
         ends.append(end)
         if len(ends) == 1 or (_names(end) != _names(best) and _is_better(end, best)):
             best = end
         if best.quiet:
             return best
     return replace(best, rivals=tuple(e for e in ends if _names(e) != _names(best)))
+
+
+def _or_plainer(way: Found) -> Found:
+    """Return a way that leaves but noise, or a plainer one with one term more where that is better.
+
+    One band, or structures of fewer terms.
+    """
+    one = _or_one_band(way)
+    return _or_fewer_terms(one) if one.quiet else one
+
+
+def _or_fewer_terms(way: Found) -> Found:
+    """Return a way that leaves but noise, or structures of fewer terms with one more besides.
+
+    What a structure's own terms explain may be what a device has besides: friction that falls
+    with speed makes a power law of viscous damping.
+    """
+    fewer = _fewer_terms(way)
+    if fewer is None or len(way.joined) == MOST:
+        return way
+    more = with_one_more(fewer, least=way.value)
+    return more if not isinstance(more, Step) and _is_better(more, way) else way
+
+
+def _fewer_terms(way: Found) -> Found | None:
+    """Return a way whose bands each have the best named structure of fewer of its terms.
+
+    None where no band has one.
+    """
+    chosen = list(way.banded.variants)
+    for band, place in enumerate(chosen):
+        own, none = set(ids_of(way.variants[place])), (way.variants[place].core, OTHER)
+        parts = [
+            k for k, v in enumerate(way.variants) if v.core not in none and set(ids_of(v)) < own
+        ]
+        if parts:
+            chosen[band] = max(parts, key=lambda k: float(way.banded.by_variant[band, k]))
+    if tuple(chosen) == way.banded.variants:
+        return None
+    return replace(way, banded=replace(way.banded, variants=tuple(chosen)))
 
 
 def _or_one_band(way: Found) -> Found:

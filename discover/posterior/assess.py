@@ -70,6 +70,14 @@ class Assessed:
         """Departures of friction's curve, where the model has that friction."""
         return self.assessor.curve_of(self.model)
 
+    def density(self, model: Composite) -> float:
+        """Return the log density of a model as it is at this one's sizes, nats; on the coarse rows.
+
+        With friction's curve as this one's sensors pass it on.
+        """
+        force = self.assessor.evaluator.coarse.force(model)
+        return fit_of(self.space, force, self.place.sizes(self.space.own_unit), self.curve)
+
     @cached_property
     def predicting(self) -> Assessed:
         """The model at the numbers that predict best, where nothing is left to a remainder.
@@ -127,15 +135,6 @@ class Assessor:
         if space is not self.space:
             space.forget()
         return local.model, value
-
-    def density(self, model: Composite, place: Place) -> float:
-        """Return the log density of a model as it is at some sizes, nats; on the coarse rows."""
-        space = self.behind(model)
-        force = self.evaluator.coarse.force(model)
-        value = fit_of(space, force, place.sizes(space.own_unit), self.curve_of(model))
-        if space is not self.space:
-            space.forget()
-        return value
 
     def promised(self, near: Local, model: Composite, place: Place) -> float:
         """Return the log evidence of a model at some sizes, nats, with the slopes of one near by.

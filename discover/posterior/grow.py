@@ -270,7 +270,8 @@ def _fitted(
             )
             if not first.quiet:
                 found = _with_likely_curve(assessor, _turned(assessor, found, starts))
-            return _plain_where_not_told(assessor, found, starts)
+            may_join = found.value > now.value - _NATS
+            return _plain_where_not_told(assessor, found, starts) if may_join else found
     # At the sizes at which it would gain most it has no finite force.
     return Candidate(starts[0].trial.id, now.value, None)
 
@@ -298,14 +299,14 @@ def _turned(assessor: Assessor, found: Candidate, starts: Sequence[Gain]) -> Can
         return found
     model, own = assessed.model, assessed.model.terms[-1].fitted
     others, seen = list[tuple[float, Composite, Gain]](), {_choice([own])}
-    here = assessor.density(model, assessed.place)
+    here = assessed.density(model)
     for gain in starts:
         choice = _choice(gain.trial.terms)
         if choice in seen or len(gain.trial.terms) > 1:
             continue
         seen.add(choice)
         other = model.without(len(model.terms) - 1).plus(_in_choice(own, gain.trial.terms[0]))
-        others.append((assessor.density(other, assessed.place), other, gain))
+        others.append((assessed.density(other), other, gain))
     value, other, gain = max(others, key=lambda o: o[0], default=(here, model, starts[0]))
     if not value > here:
         return found
