@@ -149,7 +149,7 @@ def _conditions(axes: Axes, structures: Sequence[Mapping[str, Any]]) -> None:
     axes.tick_params(axis="y", length=0, labelleft=False)
     axes.grid(visible=False, axis="y")
     axes.spines["left"].set_visible(False)
-    axes.set_xlabel("Condition number")
+    axes.set_xlabel("Condition number", fontsize=10, loc="left")
     axes.set_title("Conditioning")
 
 
