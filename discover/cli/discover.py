@@ -54,6 +54,7 @@ def discover(
 
     # Loaded here: --help and complaints about options need no numerics.
     from discover.document import json_text
+    from discover.record_checks import one_direction
     from discover.report.study import study_files
     from discover.study import StudyOptions, run_study
     from discover.study.verdict import verdict_lines
@@ -81,6 +82,7 @@ def discover(
             document, study.figure_data, command=invocation.repeat(seed=seed), formats=formats
         )
     files["model.json"] = json_text(study.model_dict())
+    of_data = about_data(document["findings"], (*measured.findings, *one_direction(measured)))
     deliver(
         document,
         name="study.json",
@@ -89,7 +91,7 @@ def discover(
         summary=(
             *error_lines(document),
             *verdict_lines(document),
-            *warning_lines({"findings": about_data(document["findings"], measured.findings)}),
+            *warning_lines({"findings": of_data}),
             next_command(campaign, folder),
         ),
         as_json=as_json,
@@ -107,7 +109,7 @@ def about_data(
     findings : sequence of mapping
         Of the study, as in its document.
     read : sequence of Finding
-        Of reading the campaign.
+        Of reading the campaign, and of its motion.
     """
     known = [finding.to_dict() for finding in read]
     return [f for f in findings if f.get("record") is not None or f in known]

@@ -15,6 +15,7 @@ from discover.record_checks.check import (
     check_record,
     check_records,
     data_errors,
+    one_direction,
 )
 from discover.record_checks.loop_work import LoopWork, loop_work
 from discover.record_checks.together import Differing, differing_records
@@ -34,6 +35,7 @@ __all__ = [
     "digest_of",
     "force_deviation",
     "loop_work",
+    "one_direction",
     "returns",
     "turns",
     "work_of",

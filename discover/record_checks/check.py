@@ -150,11 +150,23 @@ def data_errors(campaign: Campaign) -> tuple[Finding, ...]:
     return tuple(f for f in _of_campaign(campaign) if f.level == "error")
 
 
+def one_direction(campaign: Campaign) -> list[Finding]:
+    """Return a finding where no motion turns back, but some model may still be told."""
+    fitted = campaign.fitted
+    if any(turns(r) for r in fitted) or not any(returns(r) for r in fitted):
+        return []
+    text = (
+        "no fitted record turns back: dry friction and a constant force are one number here;"
+        " measure a stroke out and back"
+    )
+    return [Finding("warning", text)]
+
+
 def _of_campaign(campaign: Campaign) -> list[Finding]:
     return [
         *_signs(campaign.records),
         *_one_way(campaign),
-        *_one_direction(campaign),
+        *one_direction(campaign),
         *_copies(campaign.records),
         *_roles(campaign),
     ]
@@ -175,18 +187,6 @@ def _one_way(campaign: Campaign) -> list[Finding]:
     return [
         Finding("error" if lone else "warning", text, r.file) for r in fitted if not returns(r)
     ]
-
-
-def _one_direction(campaign: Campaign) -> list[Finding]:
-    """Return a finding where no motion turns back, but some model may still be told."""
-    fitted = campaign.fitted
-    if any(turns(r) for r in fitted) or not any(returns(r) for r in fitted):
-        return []
-    text = (
-        "no fitted record turns back: dry friction and a constant force are one number here;"
-        " measure a stroke out and back"
-    )
-    return [Finding("warning", text)]
 
 
 def _signs(records: tuple[Record, ...]) -> list[Finding]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from discover.bands.boundaries import Boundary
 from discover.bands.found import Found
-from discover.record_checks import data_errors, differing_records
+from discover.record_checks import data_errors, differing_records, one_direction
 from discover.records import Campaign, Finding
 from discover.rows import record_rows
 from discover.study.options import StudyOptions
@@ -58,6 +58,8 @@ def study_findings(
         result += _about_band(index, band, len(bands))
         result += _about_frequencies(index, band, prepared)
     result += _about_extras(bands[0])
+    if any(b.friction for b in bands):
+        result += one_direction(campaign)
     for end in ends:
         if end.width is not None:
             result.append(

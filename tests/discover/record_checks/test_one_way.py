@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -21,10 +22,12 @@ def _record(name: str) -> str:
     return f'[[records]]\nfile = "{name}"\n'
 
 
-def _write(path: Path, time: np.ndarray, x: np.ndarray, *, noise: float = 0.002) -> None:
+def _write(
+    path: Path, time: np.ndarray, x: np.ndarray, *, noise: float = 0.002, friction: float = 0.0
+) -> None:
     v = np.gradient(x, time)
     rng = np.random.default_rng(time.size)
-    force = 3000.0 * v + 200.0 * np.gradient(v, time)
+    force = 3000.0 * v + 200.0 * np.gradient(v, time) + friction * np.tanh(v / 1e-4)
     force = force + noise * np.std(force) * rng.standard_normal(time.size)
     x = x + 1e-4 * np.ptp(x) * rng.standard_normal(time.size)
     table = np.column_stack([time, 1e3 * x, force])
@@ -83,7 +86,8 @@ def _strokes(folder: Path, back: int) -> None:
     for k, seconds in enumerate((1.0, 2.0, 4.0)):
         cycles = 1.0 if k < back else 0.5
         time = np.linspace(0.0, seconds, 400)
-        _write(folder / f"{k}.csv", time, -0.01 * np.cos(2.0 * np.pi * cycles * time / seconds))
+        x = -0.01 * np.cos(2.0 * np.pi * cycles * time / seconds)
+        _write(folder / f"{k}.csv", time, x, friction=50.0)
     (folder / "campaign.toml").write_text("".join(_record(f"{k}.csv") for k in range(3)))
 
 
@@ -95,6 +99,16 @@ def test_strokes_that_never_turn_back_do_not_tell_friction_from_a_constant_force
     assert main(["check", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
     said = "Warning: no fitted record turns back: dry friction and a constant force are one number"
     assert (said in capsys.readouterr().out) is (back == 0)
+
+
+def test_an_answer_says_so_where_it_states_friction(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _strokes(tmp_path, 0)
+    assert main(["discover", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
+    document = json.loads((tmp_path / "out" / "study.json").read_text())
+    assert any(b["friction"] for b in document["bands"])
+    assert "Warning: no fitted record turns back" in capsys.readouterr().out
 
 
 @given(
