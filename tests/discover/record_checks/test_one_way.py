@@ -27,7 +27,7 @@ def _write(
 ) -> None:
     v = np.gradient(x, time)
     rng = np.random.default_rng(time.size)
-    force = 3000.0 * v + 200.0 * np.gradient(v, time) + friction * np.tanh(v / 1e-4)
+    force = 3000.0 * v + 200.0 * np.gradient(v, time) + friction * np.sign(v)
     force = force + noise * np.std(force) * rng.standard_normal(time.size)
     x = x + 1e-4 * np.ptp(x) * rng.standard_normal(time.size)
     table = np.column_stack([time, 1e3 * x, force])
