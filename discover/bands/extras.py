@@ -108,7 +108,7 @@ def _targets(rows: Sequence[RecordRows], changed: Behind) -> list[Array]:
 def with_one_more(way: Found, *, least: float = -np.inf) -> Found | Step:
     """Return the bands with the term that makes the records most probable, or why there is none.
 
-    With `least`, log evidence (nats) that a term has to reach, those that can't are not fitted.
+    With `least`, log evidence (nats) that is to be reached, terms that can't are not fitted.
     """
     now = way.assessed
     step = _that_predict(now, grown(way.device.assessor, now, _open(way), least=least))

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from discover.bands.extras import searched_with, with_one_more, with_several
 from discover.bands.found import Device, Found, held, ids_of
 from discover.bands.idle import without_idle
@@ -38,7 +40,7 @@ def found(device: Device) -> Found:
         end = _grown(start, seen)
         if end is None:
             continue
-        end = _or_plainer(end) if end.quiet else without_idle(end)
+        end = _or_plainer(end) if end.quiet else _or_fewer_terms(without_idle(end))
         ends.append(end)
         if len(ends) == 1 or (_names(end) != _names(best) and _is_better(end, best)):
             best = end
@@ -57,7 +59,7 @@ def _or_plainer(way: Found) -> Found:
 
 
 def _or_fewer_terms(way: Found) -> Found:
-    """Return a way that leaves but noise, or structures of fewer terms with one more besides.
+    """Return a way, or structures of fewer of its terms with one more besides where that is better.
 
     What a structure's own terms explain may be what a device has besides: friction that falls
     with speed makes a power law of viscous damping.
@@ -65,7 +67,7 @@ def _or_fewer_terms(way: Found) -> Found:
     fewer = _fewer_terms(way)
     if fewer is None or len(way.joined) == MOST:
         return way
-    more = with_one_more(fewer, least=way.value)
+    more = with_one_more(fewer, least=way.value if way.quiet else -np.inf)
     return more if not isinstance(more, Step) and _is_better(more, way) else way
 
 

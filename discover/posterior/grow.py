@@ -43,8 +43,6 @@ class _Weighed:
     """That."""
     place: Place
     """These sizes."""
-    before: float
-    """Log evidence of the model as it is at them, nats; -inf where that was not looked at."""
     beside: Assessed
     """The model."""
 
@@ -69,8 +67,8 @@ def grown(
     ids : collection of str
         Terms that may join.
     least : float
-        Log evidence that a model with one of them is to have, nats: those that can't are not
-        fitted.
+        Log evidence that a model with one of them is to have, nats: those that are not half way
+        there after a few steps of a fit are not fitted further.
     """
     found = [Candidate("", now.value, now)]
     changing = any(TERMS[i].acts != "force" for i in ids)
@@ -211,15 +209,14 @@ def _tried(
         ranks[which] += 1
         near = _NEARLY if any(c.assessed and c.assessed.quiet for c in found) else _HALF
         worth = any(w.gain.value >= max(_HOPELESS, near * most[w.place] - _NATS) for w in one)
-        enough = np.isneginf(least) or any(w.before + w.gain.value / _HALF >= least for w in one)
-        if rank >= _NAMES or not worth or not enough:
+        if rank >= _NAMES or not worth:
             found.append(Candidate(gain.trial.id, now.value + min(gain.value, 0.0), None))
             continue
         fits: list[Candidate] = []
         for model, others in ((now, ()), (curved, turns))[: 1 if curved is now else 2]:
             starts = [w.gain for w in one if w.beside is model]
             if starts and not any(c.assessed and c.assessed.quiet for c in fits):
-                fits.append(_fitted(assessor, model, starts, others))
+                fits.append(_fitted(assessor, model, starts, others, least))
         found.append(max(fits, key=lambda c: c.value))
     return found
 
@@ -237,23 +234,26 @@ def _weighed(assessor: Assessor, now: Assessed, trials: Trials) -> dict[str, lis
     for place, local in {
         best.place: best.local, space.quiet: now.local, now.place: now.local
     }.items():
-        before = now.visited.get(place, -np.inf)
         for gain in gains(space, trials, local, place.sizes(space.own_unit), curve):
-            found.setdefault(gain.trial.id, []).append(_Weighed(gain, place, before, now))
+            found.setdefault(gain.trial.id, []).append(_Weighed(gain, place, now))
     return found
 
 
 def _fitted(
-    assessor: Assessor, now: Assessed, starts: Sequence[Gain], turns: Sequence[FittedTerm] = ()
+    assessor: Assessor, now: Assessed, starts: Sequence[Gain], turns: Sequence[FittedTerm] = (),
+    least: float = -np.inf,
 ) -> Candidate:
-    """Return a term beside the model, fitted from its best shapes, and from curves of friction."""
+    """Return a term beside the model, fitted from its best shapes, and from curves of friction.
+
+    Only begun where it will not reach the `least` log evidence, nats.
+    """
     evaluator = assessor.evaluator.coarse
     start = now.place.towards(assessor.space.quiet)
     chosen = [
         (gain, model) for gain in _starting(starts)
         if np.all(np.isfinite(evaluator.force(model := now.model.plus(*_begun(gain)))))
     ]
-    if len(chosen) > 1 or (chosen and turns):
+    if len(chosen) > 1 or (chosen and (turns or least > -np.inf)):
         glanced = _glanced(assessor, chosen, start)
         if turns and assessor.friction is not None:
             gain = glanced[0][0]
@@ -261,6 +261,9 @@ def _fitted(
             at = place_of(assessor.friction, model)
             turned = [(gain, model.with_shape(at, t.shape)) for t in turns]
             glanced = sorted(glanced + _glanced(assessor, turned, start), key=_rank)
+        gained = glanced[0][0].trial.log_prior + glanced[0][2] - now.value
+        if now.value + gained / _HALF < least:
+            return Candidate(glanced[0][0].trial.id, now.value + min(gained, 0.0), None)
         chosen = [(g, m) for g, m, _ in glanced]
     for gain, model in chosen:
         if np.all(np.isfinite(assessor.evaluator.force(model))):  # on the fine rows too
