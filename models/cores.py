@@ -23,6 +23,8 @@ class Core:
     """Range of a term's shape parameter, by the term's id, where it is not the term's own."""
     alone: tuple[str, ...] = ()
     """Ids of terms each of which makes it by itself, too."""
+    plain: tuple[str, ...] = ()
+    """Likewise, of terms that every structure may have besides."""
     beside: tuple[str, ...] = ()
     """Ids of other structures' terms with which a device is this one still: what it has besides."""
 
@@ -34,7 +36,7 @@ class Core:
             for size in range(len(self.optional) + 1)
             for more in combinations(self.optional, size)
         ]
-        return (*sets, *((i,) for i in self.alone))
+        return (*sets, *((i,) for i in (*self.alone, *self.plain)))
 
 
 FRICTION = "coulomb-friction"
@@ -53,11 +55,12 @@ CORES = (
     ),
     Core(
         OTHER, "integer", (), ("viscous-damping", "quadratic-damping"),
-        alone=("power-law-damping",),
+        alone=("power-law-damping",), plain=("stiffness",),
     ),
 )  # fmt: skip
 """Chen & Chen, *Materials* 2025, 18(11), 2556, Eqs. 5 to 7; the last is a device without inertance,
-whose loss may go with any power of speed, as in viscous dampers of buildings.
+whose loss may go with any power of speed, as in viscous dampers of buildings, or a spring: what a
+fractional derivative of order 0 would be otherwise.
 """
 
 TELLING = frozenset(i for c in CORES for i in (*c.required, *c.optional, *c.alone))

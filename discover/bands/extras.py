@@ -14,7 +14,7 @@ import numpy as np
 
 from discover.bands.as_fitted import as_fitted
 from discover.bands.dividing import searched
-from discover.bands.found import Device, Found, Joined, held
+from discover.bands.found import Device, Found, Joined, held, ids_of
 from discover.bands.search import BandSearch
 from discover.bands.variants import variants_of
 from discover.posterior.assess import Assessed
@@ -128,7 +128,8 @@ def _cores(way: Found) -> list[str]:
 
 def _open(way: Found) -> list[str]:
     """Return the ids of what may join; of structures' terms what each band's may have beside."""
-    there = {j.id for j in way.joined}
+    chosen = [way.variants[v] for v in way.banded.variants]
+    there = {j.id for j in way.joined}.union(*(ids_of(v) for v in chosen))
     held = [set(c.beside) for c in way.device.cores if c.name in _cores(way)]
     return [
         i for i in way.device.extras
@@ -138,9 +139,12 @@ def _open(way: Found) -> list[str]:
 
 def _beside(variants: Sequence[Variant], device: Device, joined: Sequence[Joined]) -> list[Variant]:
     """Return structures, those ruled out that hold or become others with what has joined."""
-    own = {j.id for j in joined} & TELLING
-    possible = {c.name for c in device.cores if own <= set(c.beside)}
-    return [v if v.core in possible else replace(v, log_prior=-np.inf) for v in variants]
+    there = {j.id for j in joined}
+    possible = {c.name for c in device.cores if there & TELLING <= set(c.beside)}
+    return [
+        v if v.core in possible and there.isdisjoint(ids_of(v)) else replace(v, log_prior=-np.inf)
+        for v in variants
+    ]
 
 
 def _joined(way: Found, step: Step) -> Found:
