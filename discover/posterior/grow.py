@@ -29,7 +29,9 @@ from models.terms import TERMS
 _NAMES = 5  # that are fitted, of those that gain most
 _SHAPES = 3  # of each, from which a fit starts, the best of each discrete choice first
 _HOPELESS = -3.0  # nats of gain, below which nothing is fitted
-_HALF = 0.5  # of the greatest gain in a straight line, that a shape near the right one has
+_HALF = 0.5
+"""Of the greatest gain in a straight line, that a shape near the right one has; of a term's whole
+gain, that a few steps of a fit reach."""
 _NEARLY = 0.8  # likewise, where another explains all but noise already
 _TOLD = 3.0  # nats, by which a discrete choice is to be more probable than the plain one
 _NATS = 20.0  # less than these shares; also of evidence, that a term may lose beside a remainder
