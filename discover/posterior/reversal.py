@@ -78,7 +78,7 @@ class Reversal:
     interval: tuple[float, float]
     """95 %."""
     differs: float
-    """Standard deviation between records, over the friction."""
+    """Standard deviation between records, over the friction, or over its own where that is more."""
     fading: Fading
     """What falls away beside it."""
     beside: tuple[float, float] | None = None
@@ -212,6 +212,7 @@ def reversals_of(
     others = [i for i, n in enumerate(predicting.local.numbers) if n.term != at[0]]
     slopes = predicting.local.slopes
     sets = [_few(columns, total, few, slopes[:, some]) for some in (others, [])]
+    slides, _ = fading.deviations(fading.numbers, predicting.judged.solved.covariance)
     without = left + main.coefficient * plain
     sizes = assessed.place.sizes(space.own_unit)
     power = 1.0 if assessed.quiet else own_share(predicting)
@@ -220,7 +221,7 @@ def reversals_of(
     for terms in sets[:1] if sets[0] == sets[1] else sets:
         found = Reversal(curve.id, terms, follows, sure, size, interval, 0.0, fading)
         if found.sliding > 0.0:
-            found = replace(found, differs=sizes.friction / found.sliding)
+            found = replace(found, differs=sizes.friction / max(found.sliding, slides))
         result.append(found)
     return result
 
