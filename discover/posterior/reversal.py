@@ -78,7 +78,8 @@ class Reversal:
     interval: tuple[float, float]
     """95 %."""
     differs: float
-    """Standard deviation between records, over the friction, or over its own where that is more."""
+    """Standard deviation between records, over the friction or its own deviation, the greater: of
+    what may be nothing there is no share."""
     fading: Fading
     """What falls away beside it."""
     beside: tuple[float, float] | None = None

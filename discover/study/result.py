@@ -111,7 +111,7 @@ class FrictionCurve:
     probability: float
     """That it is a displacement, or a speed, over which friction reverses."""
     differs_by_record: float
-    """Standard deviation between records, over the friction."""
+    """Standard deviation between records, over the friction or its own deviation, the greater."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the document's entry."""
