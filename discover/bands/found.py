@@ -138,7 +138,7 @@ class Found:
             model, assessor = self.model, self.device.assessor
             if self.before is not None:
                 before = as_it_was(model, self.before)
-                model = assessor.nearest([model, before], banded.place)
+                model, _ = assessor.nearest([model, before], banded.place)
             self.fits[key] = assessor.assess(model, banded.place)
         return self.fits[key]
 

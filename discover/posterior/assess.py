@@ -147,10 +147,13 @@ class Assessor:
         space, curve = self.behind(model), self.curve_of(model)
         return judged(local, local.beside(space, curve), place.sizes(space.own_unit)).value
 
-    def nearest(self, models: Sequence[Composite], place: Place) -> Composite:
-        """Return the model that a few steps of a fit make most probable, after these steps."""
+    def nearest(self, models: Sequence[Composite], place: Place) -> tuple[Composite, float]:
+        """Return the model that a few steps of a fit make most probable, after these steps.
+
+        And its log evidence at these sizes, nats; on the coarse rows.
+        """
         begun = [self.glance(m, place, iterations=FEW_STEPS) for m in models]
-        return max(begun, key=lambda b: b[1])[0]
+        return max(begun, key=lambda b: b[1])
 
     def assess(self, model: Composite, start: Place, *, refit: bool = True) -> Assessed:
         """Return a model fitted and assessed, from sizes to start from."""

@@ -98,6 +98,7 @@ def chosen_behind(assessor: Assessor, assessed: Assessed) -> Assessed:
     How the device moves behind a joint hangs on friction's curve. Which one is likely without the
     joint says little: what yields there looks like friction that reverses over a displacement.
     Curves are ranked by what the model's slopes promise of them, as long as another one is better.
+    One that is no better after a few steps of a fit is not fitted further.
     """
     curve = assessor.friction
     if curve is None or not any(
@@ -111,7 +112,10 @@ def chosen_behind(assessor: Assessor, assessed: Assessed) -> Assessed:
         turned = [here.model.with_shape(at, shape) for shape in shapes]
         values = np.array([assessor.promised(here.local, m, place) for m in turned])
         likely = [turned[k] for k in np.argsort(-values)[:_LIKELIEST]]
-        there = assessor.assess(assessor.nearest(likely, place), place)
+        nearest, value = assessor.nearest(likely, place)
+        if value <= assessor.promised(here.local, here.model, place):
+            return here
+        there = assessor.assess(nearest, place)
         if there.value <= here.value + _BETTER:
             return here
         here = there
