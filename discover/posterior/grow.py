@@ -263,7 +263,8 @@ def _fitted(
             at = place_of(assessor.friction, model)
             turned = [(gain, model.with_shape(at, t.shape)) for t in turns]
             glanced = sorted(glanced + _glanced(assessor, turned, start), key=_rank)
-        gained = glanced[0][0].trial.log_prior + glanced[0][2] - now.value
+        # At the sizes from which a fit starts a term may gain less than at those of the model.
+        gained = max(starts[0].value, glanced[0][0].trial.log_prior + glanced[0][2] - now.value)
         if now.value + gained / _HALF < least:
             return Candidate(glanced[0][0].trial.id, now.value + min(gained, 0.0), None)
         chosen = [(g, m) for g, m, _ in glanced]
