@@ -59,7 +59,7 @@ def _or_plainer(way: Found) -> Found:
 
 
 def _or_fewer_terms(way: Found) -> Found:
-    """Return a way, or structures of fewer terms with one more besides where that is better.
+    """Return a way, or structures of fewer of its terms with one more besides where that is better.
 
     What a structure's own terms explain may be what a device has besides: friction that falls
     with speed makes a power law of viscous damping.
@@ -72,16 +72,15 @@ def _or_fewer_terms(way: Found) -> Found:
 
 
 def _fewer_terms(way: Found) -> Found | None:
-    """Return a way whose bands each have the best named structure of fewer terms, of its family.
+    """Return a way whose bands each have the best named structure of fewer of its terms.
 
     None where no band has one.
     """
     chosen = list(way.banded.variants)
     for band, place in enumerate(chosen):
-        own, none = ids_of(way.variants[place]), (way.variants[place].core, OTHER)
+        own, none = set(ids_of(way.variants[place])), (way.variants[place].core, OTHER)
         parts = [
-            k for k, v in enumerate(way.variants) if v.core not in none
-            and len(ids_of(v)) < len(own) and family_of(ids_of(v)) == family_of(own)
+            k for k, v in enumerate(way.variants) if v.core not in none and set(ids_of(v)) < own
         ]
         if parts:
             chosen[band] = max(parts, key=lambda k: float(way.banded.by_variant[band, k]))

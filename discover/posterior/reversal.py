@@ -207,7 +207,8 @@ def reversals_of(
     total = main.coefficient * plain
     total = total + np.einsum("k,ukr->ur", departing, space.columns[:, departures.columns])
     few, columns = [curve.terms[k] for k in (0, *departed)], whole[:, [0, *departed]]
-    more = _laws(space, {t.id for t in departures.terms} - {curve.id})
+    # Where more than noise is left, the law that fits best would stand for a part of that.
+    more = _laws(space, {t.id for t in departures.terms if assessed.quiet} - {curve.id})
     few, columns = [*few, *more], np.concatenate([columns, _units(space, more)], axis=1)
     if any(main.shape.values()):  # a fitted curve of its own, beside the plainest
         few, columns = [one, *few], np.concatenate([plain[:, None], columns], axis=1)

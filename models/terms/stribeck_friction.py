@@ -50,7 +50,7 @@ def starts(scales: Scales) -> list[Start]:
 def curves(scales: Scales) -> list[Shape]:
     """Return falls that end within the speeds of the fastest test, and can be told from damping."""
     return [
-        {"stribeck_velocity": s} for s in doubling(0.03 * scales.least_speed, 0.1 * scales.speed)
+        {"stribeck_velocity": s} for s in doubling(0.03 * scales.least_speed, 0.2 * scales.speed)
     ]
 
 
