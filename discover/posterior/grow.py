@@ -259,7 +259,7 @@ def _fitted(
         glanced = _glanced(assessor, chosen, start)
         if turns and assessor.friction is not None:
             at = place_of(assessor.friction, now.model)
-            turned = [(gain, model.with_shape(at, t.shape)) for gain, model in chosen for t in turns]
+            turned = [(gain, m.with_shape(at, t.shape)) for gain, m in chosen for t in turns]
             glanced = sorted(glanced + _glanced(assessor, turned, start), key=_rank)
         # At the sizes from which a fit starts a term may gain less than at those of the model.
         gained = max(starts[0].value, glanced[0][0].trial.log_prior + glanced[0][2] - now.value)
