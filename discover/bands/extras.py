@@ -250,10 +250,13 @@ def _left_with(way: Found, joined: Joined, less: Assessed) -> Found:
 
 
 def _that_predict(now: Assessed, step: Step) -> Step:
-    """Return a step without what is not needed, nor a term whose sign the records don't tell."""
+    """Return a step without what is more probable but does not predict records left out better.
+
+    Nor may it be a term whose sign the records don't tell.
+    """
     while step.best.id and step.best.assessed is not None:
         best = step.best.assessed
-        if is_told(best, step.best.places) and is_needed(now, best):
+        if is_told(best, step.best.places) and predicts_better(now, best):
             break
         step = step.without([step.best.id])
     return step

@@ -294,19 +294,6 @@ class Given:
         taken = np.linalg.solve(self.inner, self.spread[:, None] * plain)
         return np.asarray(new @ new.transpose(0, 2, 1) - taken.transpose(0, 2, 1) @ taken)
 
-    def own_friction(self, left: Array) -> Array:
-        """Return the mean square (U,), N^2, of the sliding friction that each unit has of its own.
-
-        Over its posterior, given what a model leaves (U, R) of the measured force.
-        """
-        p, place = self.products, self.functions
-        side = np.einsum("unr,ur->un", p.nuisance, left / p.scale) * self.spread
-        first = np.zeros_like(side)
-        first[:, place] = self.spread[place]
-        half = np.linalg.solve(self.inner, np.stack([side, first], axis=2))
-        mean = np.sum(half[:, :, 0] * half[:, :, 1], axis=1)
-        return np.asarray(mean**2 + np.sum(half[:, :, 1] ** 2, axis=1))
-
     def kept(self, columns: Indices, spread: Array) -> Kept:
         """Return columns (K,) beside which others are compared, made once at these sizes."""
         key = columns.tobytes() + spread.tobytes()

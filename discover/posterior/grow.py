@@ -258,11 +258,12 @@ def _fitted(
     if len(chosen) > 1 or (chosen and (turns or least > -np.inf)):
         glanced = _glanced(assessor, chosen, start)
         if turns and assessor.friction is not None:
-            at = place_of(assessor.friction, now.model)
-            turned = [(gain, m.with_shape(at, t.shape)) for gain, m in chosen for t in turns]
+            gain = glanced[0][0]
+            model = now.model.plus(*_begun(gain))
+            at = place_of(assessor.friction, model)
+            turned = [(gain, model.with_shape(at, t.shape)) for t in turns]
             glanced = sorted(glanced + _glanced(assessor, turned, start), key=_rank)
-        # At the sizes from which a fit starts a term may gain less than at those of the model.
-        gained = max(starts[0].value, glanced[0][0].trial.log_prior + glanced[0][2] - now.value)
+        gained = glanced[0][0].trial.log_prior + glanced[0][2] - now.value
         if now.value + gained / _HALF < least:
             return Candidate(glanced[0][0].trial.id, now.value + min(gained, 0.0), None)
         chosen = [(g, m) for g, m, _ in glanced]

@@ -12,7 +12,7 @@ from discover.posterior.assess import Assessed, Assessor
 from discover.posterior.covariance import Sizes
 from discover.posterior.metric import Comparison
 from discover.posterior.model import Composite
-from discover.posterior.space import Part, Space, others_of
+from discover.posterior.space import Part, Space
 from models.checks import Array
 from models.constitutive import FittedTerm
 
@@ -21,9 +21,12 @@ _LIKELIEST = 3  # curves behind a joint, from which a fit starts
 
 
 def curves(space: Space, curve: Part) -> Array:
-    """Return the columns (U, K, R) of a term's curves: each as it is, none as a difference."""
+    """Return the columns (U, K, R) of a term's curves, each as it is.
+
+    In a space the first is, and the others stand as differences from it.
+    """
     columns = space.columns[:, curve.columns]
-    return np.asarray(columns + others_of(curve.terms)[:, None] * columns[:, :1])
+    return np.concatenate([columns[:, :1], columns[:, 1:] + columns[:, :1]], axis=1)
 
 
 def each_alone(space: Space, sizes: Sizes, left: Array, whole: Array, power: float = 1.0) -> Array:

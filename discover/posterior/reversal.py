@@ -9,7 +9,6 @@ import numpy as np
 from scipy.special import logsumexp
 
 from discover.posterior.assess import Assessed, Assessor
-from discover.posterior.catalogue import starts_of
 from discover.posterior.covariance import Sizes
 from discover.posterior.local import Local, fit_of, fitted, judged, local_of
 from discover.posterior.metric import curve_given
@@ -20,7 +19,6 @@ from discover.posterior.space import Part, Space
 from discover.regression.best_subset import best_subsets
 from models.checks import Array
 from models.constitutive import FittedTerm
-from models.terms import TERMS
 
 _MOST = 3  # curves that a model is given
 _NOTHING = 1e-3  # of friction, below which a curve is left out
@@ -30,7 +28,11 @@ _ENOUGH = 0.05  # of a row's noise, that these may leave of the whole curve
 
 @dataclass(frozen=True)
 class Fading:
-    """What friction's curve holds of terms that need it, which falls away from its reversal."""
+    """What friction's curve holds of terms that need it, which falls away from its reversal.
+
+    Their curves stand as differences from friction's own, whose coefficient is therefore what
+    slides and what falls away together.
+    """
 
     numbers: tuple[Number, ...]
     """P of the model."""
@@ -39,7 +41,7 @@ class Fading:
     variance: float
     """Of what falls away, these given."""
     main: Number
-    """Friction's own coefficient: what slides."""
+    """Friction's own coefficient."""
 
     def deviations(self, numbers: Sequence[Number], covariance: Array) -> tuple[float, float]:
         """Return the standard deviations of what slides and of what falls away.
@@ -53,11 +55,10 @@ class Fading:
         """
         known = dict(zip(self.numbers, self.slope, strict=True))
         falling = np.array([known.get(n, 0.0) for n in numbers])
-        sliding = np.array([float(n == self.main) for n in numbers])
-        return (
-            float(np.sqrt(sliding @ covariance @ sliding)),
-            float(np.sqrt(self.variance + falling @ covariance @ falling)),
-        )
+        sliding = np.array([float(n == self.main) for n in numbers]) - falling
+        first, second = (float(np.sqrt(self.variance + g @ covariance @ g))
+                         for g in (sliding, falling))  # fmt: skip
+        return first, second
 
 
 @dataclass(frozen=True)
@@ -184,32 +185,29 @@ def reversals_of(
     predicting : Assessed
         The same at the numbers that predict best: its friction is given.
     """
-    curve, departures = assessor.friction, assessor.curve_of(assessed.model)
-    if curve is None or departures is None:
+    curve, own = assessor.friction, assessor.curve_of(assessed.model)
+    if curve is None or own is None:
         return []
     at = [i for i, p in enumerate(assessed.model.terms) if p.fitted.id == curve.id]
     space = predicting.space
     main = predicting.model.terms[at[0]].fitted
     left = space.sheet.target - predicting.local.force
     departing, covariance, leaning = curve_given(
-        space, predicting.place.sizes(space.own_unit), left, departures, predicting.judged.scale,
+        space, predicting.place.sizes(space.own_unit), left, own, predicting.judged.scale,
         predicting.local.slopes,
     )  # fmt: skip
-    falls = np.array([t.id != curve.id for t in departures.terms])
+    falls = np.array([t.id != curve.id for t in own.terms])
     fading = Fading(
         predicting.local.numbers, leaning[falls].sum(axis=0),
         float(covariance[np.ix_(falls, falls)].sum()), Number(at[0], None),
     )  # fmt: skip
     one = FittedTerm(main.id, 1.0, main.shape)
-    plain = _units(space, [one])[:, 0]
+    plain = space.sheet.stack([space.columns_of(r, [one]) for r in space.sheet.rows])[:, 0]
     whole = curves(space, curve)
-    departed = np.searchsorted(curve.columns, departures.columns)
+    departed = np.searchsorted(curve.columns, own.columns)
     total = main.coefficient * plain
-    total = total + np.einsum("k,ukr->ur", departing, space.columns[:, departures.columns])
+    total = total + np.einsum("k,ukr->ur", departing, whole[:, departed] - whole[:, :1])
     few, columns = [curve.terms[k] for k in (0, *departed)], whole[:, [0, *departed]]
-    # Where more than noise is left, the law that fits best would stand for a part of that.
-    more = _laws(space, {t.id for t in departures.terms if assessed.quiet} - {curve.id})
-    few, columns = [*few, *more], np.concatenate([columns, _units(space, more)], axis=1)
     if any(main.shape.values()):  # a fitted curve of its own, beside the plainest
         few, columns = [one, *few], np.concatenate([plain[:, None], columns], axis=1)
     others = [i for i, n in enumerate(predicting.local.numbers) if n.term != at[0]]
@@ -220,28 +218,13 @@ def reversals_of(
     sizes = assessed.place.sizes(space.own_unit)
     power = 1.0 if assessed.quiet else own_share(predicting)
     follows, sure, size, interval = _turning(space, sizes, without, whole, curve, power)
-    own = float(np.sqrt(np.mean(space.given(sizes).own_friction(without - total))))
     result = []
     for terms in sets[:1] if sets[0] == sets[1] else sets:
         found = Reversal(curve.id, terms, follows, sure, size, interval, 0.0, fading)
         if found.sliding > 0.0:
-            found = replace(found, differs=own / max(found.sliding, slides))
+            found = replace(found, differs=sizes.friction / max(found.sliding, slides))
         result.append(found)
     return result
-
-
-def _laws(space: Space, ids: Collection[str]) -> list[FittedTerm]:
-    """Return units of terms in all laws and sizes in which they are tried alone.
-
-    Friction's curve holds one law of each, of which several sizes make up for another law.
-    """
-    chosen = [(i, s) for i in sorted(ids) for s in starts_of(TERMS[i], space.scales)]
-    return [FittedTerm(i, 1.0, dict(s.shapes[0])) for i, s in chosen if len(s.shapes) == 1]
-
-
-def _units(space: Space, terms: Sequence[FittedTerm]) -> Array:
-    """Return the columns (U, K, R) of terms as they are."""
-    return space.sheet.stack([space.columns_of(r, terms) for r in space.sheet.rows])
 
 
 def _few(

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from discover.posterior.sheet import Sheet, sheet_of
-from discover.posterior.space import Part, Space, curve_part, departing
+from discover.posterior.space import Part, Space, curve_part, differing
 from discover.rows import RecordRows
 from discover.rows.columns import force_columns, scales_of
 from models.checks import Array
@@ -71,7 +71,7 @@ def behind(space: Space, curve: Part, columns_of: ColumnsOf) -> Space:
     own = _own(space.sheet, blocks, curve.terms)
     empty = space.columns[:, :0]
     changed = Space(space.sheet, space.scales, empty, own, space.own_unit, columns_of)
-    changed.add(departing(blocks, curve.terms))
+    changed.add(differing(blocks))
     return changed
 
 
@@ -79,4 +79,4 @@ def _own(sheet: Sheet, blocks: Sequence[Array], curves: Sequence[FittedTerm]) ->
     """Return the columns (U, N, R) that units may have of their own: of the term's own curves."""
     own = [k for k, t in enumerate(curves) if t.id == curves[0].id]
     chosen = sorted({own[min(int(share * len(own)), len(own) - 1)] for share in _OWN} - {0})
-    return sheet.stack([b[[0, *chosen]] for b in departing(blocks, curves)])
+    return sheet.stack([differing([b])[0][[0, *chosen]] for b in blocks])

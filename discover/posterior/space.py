@@ -147,8 +147,8 @@ def begun(term: FittedTerm, size: float) -> FittedTerm:
 def curve_part(
     space: Space, blocks: Sequence[Array], term: Term, curves: Sequence[FittedTerm]
 ) -> Part:
-    """Return a term with its curves, as `departing` has them."""
-    places = space.add(departing(blocks, curves))
+    """Return a term with its curves: the plainest, and how the others differ from it."""
+    places = space.add(differing(blocks))
     size = float(space.scale(places[:1])[0])
     spread = np.full(places.size, term.departure)
     spread[0] = 1.0
@@ -160,18 +160,9 @@ def curve_part(
     )
 
 
-def departing(blocks: Sequence[Array], curves: Sequence[FittedTerm]) -> list[Array]:
-    """Return columns (K, R_r) of every record: the plainest curve, and departures from it.
-
-    The term's other curves stand as differences from the plainest: its coefficient is their sum.
-    Those of terms that need it are there besides, as they are.
-    """
-    return [b - others_of(curves)[:, None] * b[:1] for b in blocks]
-
-
-def others_of(curves: Sequence[FittedTerm]) -> Array:
-    """Return (K,) 1 for each curve of a term but the plainest, 0 for that and other terms'."""
-    return np.array([float(k > 0 and t.id == curves[0].id) for k, t in enumerate(curves)])
+def differing(blocks: Sequence[Array]) -> list[Array]:
+    """Return columns (K, R_r) of every record: the first, and how the others differ from it."""
+    return [np.concatenate([b[:1], b[1:] - b[:1]]) for b in blocks]
 
 
 def _is_open(curve: FittedTerm, identifier: str, held: Sequence[FittedTerm]) -> bool:
@@ -188,7 +179,7 @@ def _is_open(curve: FittedTerm, identifier: str, held: Sequence[FittedTerm]) -> 
 
 
 def departures(part: Part, held: Sequence[FittedTerm] | None) -> Part:
-    """Return departures from a term's plainest curve, without that.
+    """Return how a term's curves differ from the plainest, without that.
 
     Parameters
     ----------

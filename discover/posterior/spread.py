@@ -102,12 +102,11 @@ def idle(predicting: Assessed) -> list[int]:
 
 
 def is_told(assessed: Assessed, terms: Collection[int]) -> bool:
-    """Tell whether the interval of a coefficient among some of a model's terms is of one sign.
+    """Tell whether the records tell the sign of a coefficient among some of a model's terms.
 
     A term that is probable beside a remainder, but that a model which has to predict by itself
     may as well do without, stands for a part of that remainder.
     """
     spread = spread_of(assessed, assessed.predicting.model)
     own = [i for i, n in enumerate(spread.numbers) if n.term in terms and n.shape is None]
-    intervals = [spread.interval(i, -np.inf, np.inf) for i in own]
-    return any(low > 0.0 or high < 0.0 for low, high in intervals)
+    return bool(np.any(np.abs(spread.mean[own]) > SURE * spread.deviation[own]))

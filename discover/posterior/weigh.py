@@ -76,7 +76,7 @@ def gains(
     sizes : Sizes
         Of what no term explains.
     curve : Part, optional
-        Whose departures are marginalised, and their scale: a trial may stand for what they do.
+        Whose departures are marginalised, at the scale that suits the model best.
     """
     target = local.target(space.sheet.target)[:, None]
     free = np.flatnonzero(~local.held)  # else these would take from what joins what they may not be
@@ -87,8 +87,8 @@ def gains(
             [model, trials.columns[:, np.concatenate([e.places for e in some])]], axis=1
         )
         at = Comparison(space, columns, curve).at(sizes)
-        values, left = _beside_model(at, local.spread[free])
-        found += _gains(values, left, some, space.sheet.scale(columns[:, model.shape[1] :]))
+        left = _beside_model(at, local.spread[free])
+        found += _gains(left, some, space.sheet.scale(columns[:, model.shape[1] :]))
     return sorted(found, key=lambda g: -g.value)
 
 
@@ -106,35 +106,23 @@ def _in_turn(entries: Sequence[Trial]) -> Iterator[list[Trial]]:
         yield some
 
 
-def _beside_model(at: Compared, spread: Array) -> tuple[Array, Array]:
-    """Return the model's log evidence (S,), nats, at each scale of the curve, and what it leaves.
+def _beside_model(at: Compared, spread: Array) -> Array:
+    """Return products of the measured force and trials (1 + T, 1 + T), the model taken out.
 
-    That is (S, 1 + T, 1 + T), products of the measured force and trials, the model taken out.
+    At the scale of the curve that suits the model best.
     """
     free = spread.size
-    values, left = [], []
+    values = []
     for some, normal in zip(at.gram, at.log_normal, strict=True):
-        rest, _ = without(some, np.arange(free), spread)
-        _, gained = without(some[: free + 1, : free + 1], np.arange(free), spread)
-        values.append(normal - 0.5 * float(some[free, free]) + gained)
-        left.append(rest[free:, free:])
-    return np.array(values), np.array(left)
+        plain = some[: free + 1, : free + 1]
+        _, gained = without(plain, np.arange(free), spread)
+        values.append(normal - 0.5 * float(plain[-1, -1]) + gained)
+    return without(at.gram[int(np.argmax(values))], np.arange(free), spread)[0][free:, free:]
 
 
-def _gains(values: Array, left: Array, entries: Sequence[Trial], size: Array) -> list[Gain]:
-    """Return what trials gain, over the scales of the curve.
-
-    Parameters
-    ----------
-    values : ndarray, shape (S,)
-        Log evidence of the model at each scale, nats.
-    left : ndarray, shape (S, 1 + T, 1 + T)
-        Products of what it leaves and of the trials' columns.
-    entries : sequence of Trial
-        With T columns.
-    size : ndarray, shape (T,)
-        Of each column.
-    """
+def _gains(left: Array, entries: Sequence[Trial], size: Array) -> list[Gain]:
+    """Return what trials gain, from products (1 + T, 1 + T) and sizes (T,) of their columns."""
+    side, gram = left[1:, 0], left[1:, 1:]
     sign = np.zeros(size.size)
     ends = np.cumsum([0, *(e.places.size for e in entries)])
     own = [np.arange(low, high) for low, high in pairwise(ends)]
@@ -142,19 +130,15 @@ def _gains(values: Array, left: Array, entries: Sequence[Trial], size: Array) ->
         low, high = entry.terms[0].term.coefficient_bounds(entry.terms[0].shape)
         sign[at] = float(low >= 0.0) - float(high <= 0.0)
         size[at] = np.minimum(size[at], max(-low, high))
-    before = float(np.logaddexp.reduce(values))
-    singles = [_single(np.diagonal(g)[1:], g[1:, 0], size, sign) for g in left]
+    single, mean = _single(np.diagonal(gram), side, size, sign)
     found = []
     for entry, at in zip(entries, own, strict=True):
-        each: list[tuple[float, tuple[float, ...]]]
+        many: tuple[float, ...]
         if at.size == 1:
-            k = at[0]
-            each = [(float(gained[k]), (float(mean[k]),)) for gained, mean in singles]
+            one, many = float(single[at[0]]), (float(mean[at[0]]),)
         else:
-            each = [_several(g[1:, 1:][np.ix_(at, at)], g[1:, 0][at], size[at]) for g in left]
-        whole = values + np.array([gained for gained, _ in each])
-        gained = float(np.logaddexp.reduce(whole)) - before
-        found.append(Gain(entry, gained + entry.log_prior, each[int(np.argmax(whole))][1]))
+            one, many = _several(gram[np.ix_(at, at)], side[at], size[at])
+        found.append(Gain(entry, one + entry.log_prior, many))
     return found
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from models.checks import Array
 from models.motion import Motion
 from models.terms.hysteresis import bristle_state
-from models.terms.scales import Scales, doubling
+from models.terms.scales import Scales
 from models.terms.term import Parameter, Shape, Start, Term
 
 
@@ -48,10 +48,8 @@ def starts(scales: Scales) -> list[Start]:
 
 
 def curves(scales: Scales) -> list[Shape]:
-    """Return falls that end within the speeds of the fastest test, and can be told from damping."""
-    return [
-        {"stribeck_velocity": s} for s in doubling(0.03 * scales.least_speed, 0.2 * scales.speed)
-    ]
+    """Return falls over the speeds over which friction may reverse, beside one at once."""
+    return [{"stribeck_velocity": s} for s in scales.reversals()]
 
 
 _FALLS = ("", "falling as exp(−|v|/v_s)", "falling as 1/(1 + (v/v_s)²)")
